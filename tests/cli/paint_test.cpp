@@ -211,6 +211,17 @@ TEST_F(PaintTest, IsTakenAsItIsFromARegionSet) {
   }
 }
 
+TEST_F(PaintTest, RegionsFadeOutByDefaultOnAMeshWithoutExpressions) {
+  ASSERT_EQ(run("convert head@wide=1 -o wide.ply").code, 0);
+  const std::string call = "transfer head --weights take.csv wide.ply -o out.npy --force -k 2 ";
+  const Json by_default = report(call)["targets"][0], asked = report(call + "--falloff 0.2");
+  EXPECT_EQ(by_default["weight"]["falloff"], "0.2");
+  EXPECT_EQ(by_default["de_all"], asked["targets"][0]["de_all"]);
+  for (const std::string option : {"--outside identity", "--triangles 0.9"}) {
+    EXPECT_FALSE(report(call + option)["targets"][0].contains("weight")) << option;
+  }
+}
+
 TEST_F(PaintTest, IsWhatAFalloffFadesOutAround) {
   const std::string hard =
       "transfer head --weights take.csv head@wide=1 -o out.npy --force -k 2 "
@@ -262,12 +273,12 @@ TEST_F(PaintTest, SaysWhatMakesACreaseLessVisible) {
     EXPECT_EQ(result.code, 0) << result.err;
     return result.err;
   };
-  EXPECT_THAT(says("--regions r.txt"), HasSubstr("; --falloff 0.1 lets the motion fade"));
+  EXPECT_THAT(says("--regions r.txt"), HasSubstr("; --falloff 0.3 lets the motion fade"));
   EXPECT_THAT(says("--regions r.txt --falloff 0.01"), HasSubstr("; use a larger --falloff"));
   EXPECT_THAT(says("--regions r.txt --outside identity --outside-weight 10"),
-              HasSubstr("; --falloff 0.1 without --outside identity lets the motion fade"));
+              HasSubstr("; --falloff 0.3 without --outside identity lets the motion fade"));
   EXPECT_THAT(says("-k 2 --radius 0.1 --triangles 0.2"),
-              HasSubstr("; --falloff 0.1 without --triangles lets the motion fade"));
+              HasSubstr("; --falloff 0.3 without --triangles lets the motion fade"));
 }
 
 TEST_F(PaintTest, IsToBeLargerWhereExpressionsAreHardlySeen) {

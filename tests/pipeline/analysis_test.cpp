@@ -4,6 +4,7 @@
 
 #include "tests/pipeline/takes.h"
 #include "tests/shapes.h"
+#include "toolkit/pipeline/moving_parts.h"
 
 namespace mimetra {
 namespace {
@@ -198,13 +199,13 @@ class GivenComponentsTest : public testing::Test {
   GivenComponents given_{"take.h5", analyse(source_of(take()), three_components()).components};
 
   void expect_refusal(const std::string& message) const {
-    EXPECT_THAT([this] { analysis_of(given_, take()); },
+    EXPECT_THAT([this] { analysis_of(given_, take(), moving_vertices(take())); },
                 ThrowsMessage<MismatchError>(HasSubstr("take.h5: " + message)));
   }
 };
 
 TEST_F(GivenComponentsTest, AreTakenAsTheyAre) {
-  const Analysis analysis = analysis_of(given_, take());
+  const Analysis analysis = analysis_of(given_, take(), moving_vertices(take()));
   EXPECT_TRUE(analysis.components.displacements == given_.components.displacements);
   EXPECT_EQ(analysis.seconds, 0);
 }

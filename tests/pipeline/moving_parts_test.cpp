@@ -44,11 +44,19 @@ MeshSequence with_still_body(const MeshSequence& sequence) {
           std::move(frames), sequence.times(), shape.positions};
 }
 
+Source still(const MeshSequence& sequence) {
+  return prepare_source(sequence, {.head_motion = HeadMotion::none});
+}
+
+MovingParts parts_of(const FrameSource& sequence) {
+  return moving_parts(moving_vertices(sequence), sequence.rest(), sequence.triangles());
+}
+
 TEST(MovingParts, AloneCountForTheSize) {
   const MeshSequence sequence = take();
-  EXPECT_EQ(moving_parts(sequence, sequence.rest()).diameter, sequence.diameter());
+  EXPECT_EQ(parts_of(sequence).diameter, sequence.diameter());
   const MeshSequence beside = with_still_body(sequence);
-  EXPECT_EQ(moving_parts(beside, beside.rest()).diameter, sequence.diameter());
+  EXPECT_EQ(parts_of(beside).diameter, sequence.diameter());
   EXPECT_GT(beside.diameter(), 10 * sequence.diameter());
 }
 
@@ -56,36 +64,40 @@ TEST(MovingParts, HaveOneSizeInBothHalvesOfAClip) {
   const MeshSequence clip = with_still_body(take(8));
   const auto shared = std::make_shared<const MeshSequence>(clip);
   const auto size_of = [&](std::vector<int> frames) {
-    return moving_parts(*with_rest(selected(shared, std::move(frames)), clip.rest()), clip.rest())
-        .diameter;
+    return parts_of(*with_rest(selected(shared, std::move(frames)), clip.rest())).diameter;
   };
   EXPECT_EQ(size_of({0, 1, 2, 3}), size_of({4, 5, 6, 7}));
 }
 
 TEST(MovingParts, AreMeasuredByWhatMovesInASmallSection) {
-  Noted noted;
   // Of 40: 9, and at last 14.
   const MeshSequence small = rising({0, 5, 10, 3}), large = rising({0, 5, 10, 3, 15});
-  const MovingParts size = moving_parts(small, small.rest());
+  const MovingParts size = parts_of(small);
   EXPECT_TRUE(size.is_section);
   EXPECT_DOUBLE_EQ(size.diameter, 1.5 * std::hypot(9, 3));
-  EXPECT_EQ(moving_parts(small, small.rest(), noted.sink()).diameter, size.diameter);
-  ASSERT_EQ(noted.notes.size(), 1U);
-  EXPECT_THAT(noted.notes.front().text, HasSubstr("less than a third"));
-  EXPECT_EQ(moving_parts(large, large.rest(), noted.sink()).diameter, large.diameter());
-  EXPECT_EQ(noted.notes.size(), 1U);
+  EXPECT_EQ(parts_of(large).diameter, large.diameter());
+  for (const MeshSequence* sequence : {&small, &large}) {
+    Noted noted;
+    AnalysisOptions options{.decomposition = {.count = 2}};
+    options.notes = noted.sink();
+    const Analysis analysis = analyse(still(*sequence), options);
+    EXPECT_EQ(analysis.size, parts_of(*sequence).diameter);
+    const bool is_noted = std::ranges::any_of(noted.notes, [](const Note& note) {
+      return note.text.starts_with("a small section of a connected part moves");
+    });
+    EXPECT_EQ(is_noted, sequence == &small);
+  }
 }
 
 TEST(MovingParts, AreAllWhereNothingMoves) {
-  const MeshSequence still = rising({0, 0});
-  EXPECT_EQ(moving_parts(still, still.rest()).diameter, still.diameter());
+  const MeshSequence sequence = rising({0, 0});
+  EXPECT_EQ(parts_of(sequence).diameter, sequence.diameter());
 }
 
 TEST(MovingParts, GiveTheRegionsThatAreThereWithoutAStillBody) {
   const MeshSequence alone = take(), beside = with_still_body(alone);
   const auto regions_of = [](const MeshSequence& sequence) {
-    const Source source = prepare_source(sequence, {.head_motion = HeadMotion::none});
-    return choose_regions(analyse(source, {.decomposition = {.count = 5}}));
+    return choose_regions(analyse(still(sequence), {.decomposition = {.count = 5}}));
   };
   const Regions expected = regions_of(alone), found = regions_of(beside);
   ASSERT_EQ(found.regions.size(), expected.regions.size());
@@ -93,6 +105,26 @@ TEST(MovingParts, GiveTheRegionsThatAreThereWithoutAStillBody) {
     EXPECT_EQ(found.regions[k].vertices, expected.regions[k].vertices) << k;
   }
   EXPECT_EQ(found.triangles, expected.triangles);
+}
+
+TEST(MovingParts, HoldTheDiscsThatAreChosenForATransfer) {
+  const MeshSequence alone = take(), beside = with_still_body(alone);
+  const BlendshapeModel actor = test::model_on(test::bent_patch(), 3);
+  const auto discs_of = [](const MeshSequence& sequence, const BlendshapeModel& model) {
+    const RegionChoiceOptions options{.select = Selector::transfer, .triangles = 0.4};
+    return transfer(sequence, {{"actor", model}}, {.regions = options}).regions->regions.size();
+  };
+  // The actor with the same body.
+  const Eigen::Index body = beside.vertices() - alone.vertices();
+  Positions neutral(beside.vertices(), 3);
+  neutral << actor.neutral(), beside.rest().bottomRows(body);
+  ShapeBasis expressions = actor.expressions();
+  expressions.displacements.conservativeResize(3 * beside.vertices(), Eigen::NoChange);
+  expressions.displacements.bottomRows(3 * body).setZero();
+  const BlendshapeModel with_body(beside.shared_connectivity(), neutral, expressions);
+  const std::size_t expected = discs_of(alone, actor);
+  EXPECT_GT(expected, 2U);
+  EXPECT_GE(discs_of(beside, with_body), expected);
 }
 
 }  // namespace

@@ -74,18 +74,6 @@ TEST_F(RegionBorder, FadesOutAlongTheTargetsSurface) {
               expected);
 }
 
-TEST_F(RegionBorder, FadesOutByDefaultOnATargetWithoutExpressions) {
-  const BlendshapeModel bare(TriMesh{actor_.neutral(), actor_.connectivity()}, {});
-  const auto weights_of = [&](const Regions& regions, const SolveOptions& options) {
-    return bordered_selection(regions, {"actor", bare}, options).weights;
-  };
-  SolveOptions identity;
-  identity.vertex.outside = Outside::identity;
-  EXPECT_TRUE(weights_of(hard_, {}) == weights_of(hard_, with_falloff(Length::share(0.2))));
-  EXPECT_EQ(weights_of(hard_, identity).size(), 0);
-  EXPECT_TRUE(weights_of(painted_, {}) == ramp(take_.rest()));
-}
-
 TEST_F(RegionBorder, IsAsWideWhateverPartsLieBesideTheRegions) {
   test::Shape body = test::grid(3, 3);
   body.positions *= 10 * diameter(actor_.neutral());

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include "tests/pipeline/takes.h"
-#include "toolkit/pipeline/region_border.h"
 
 namespace mimetra {
 namespace {
@@ -77,12 +76,8 @@ TEST_F(TransferTest, NeedsMotionOnlyWhereItDecomposes) {
 
 TEST_F(TransferTest, SolvesForTheVerticesInsideTheRegionsOfAMesh) {
   const Regions regions = this->regions();
-  options_.solving.falloff = SolveOptions::kBareFalloff;
-  const Eigen::VectorXd weights =
-      bordered_selection(regions, {"mesh", mesh_}, options_.solving).weights;
   const VertexTransfer by_hand(placed()->rest(), mesh_.neutral(), mesh_.triangles(),
-                               triangles_in(weights, mesh_.triangles()), {.weights = weights});
-  options_.solving.falloff = {};  // the default
+                               regions.triangles, {.inside = regions.inside});
   EXPECT_TRUE(frames_of(to(mesh_)) == by_hand.frames(*placed()));
 }
 
@@ -131,7 +126,6 @@ TEST_F(TransferTest, SaysWhereTheResultIsNotUsable) {
   EXPECT_TRUE(noted.notes.empty());
   // Few triangles whose surroundings are held where they are.
   options_.full = false;
-  options_.solving.falloff = Length::share(1e-6);
   options_.given = GivenRegions{
       "rois", regions_from_vertices(actor_.vertices(), actor_.triangles(), {{10, 11, 12}})};
   const TransferredTarget torn = to(mesh_);
@@ -202,9 +196,8 @@ TEST_F(TransferTest, CompletesRegionsForEachTargetByItself) {
   EXPECT_TRUE(frames_of(both.targets[1]) == frames_of(to(other)));
   EXPECT_EQ(both.targets[2].regions->regions.size(), 1U);
   // All of them together.
-  for (const int weighted : {0, 1}) {
-    EXPECT_TRUE(
-        std::ranges::includes(both.regions->triangles, both.targets[weighted].regions->triangles));
+  for (const TransferredTarget& target : both.targets) {
+    EXPECT_TRUE(std::ranges::includes(both.regions->triangles, target.regions->triangles));
   }
 }
 

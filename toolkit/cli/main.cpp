@@ -113,7 +113,7 @@ std::string memory_message() {
 }
 
 /// A pipe: handlers of signals may write to one, and do little else.
-std::array<int, 2> interrupts;
+std::array<int, 2> interrupts = {-1, -1};
 
 /// Waits until the pipe can be read; for ever if `milliseconds` is -1.
 void wait_for_interrupt(int milliseconds) {
@@ -125,12 +125,15 @@ void wait_for_interrupt(int milliseconds) {
 /// Gives an interrupted run a moment to end at its next step; then, or at a second interrupt,
 /// removes temporary files and ends the process. A library's factorization has no steps.
 void end_after_interrupt() {
-  constexpr int kMoment = 1500;
+  constexpr int kMoment = 1000;
   wait_for_interrupt(-1);
   char byte = 0;
   if (read(interrupts[0], &byte, 1) != 1) return;
   wait_for_interrupt(kMoment);
   mimetra::remove_pending_outputs();
+  // By now another thread may hold what streams lock.
+  constexpr std::string_view kText = "\nmimetra: error: cancelled\n";
+  if (write(STDERR_FILENO, kText.data(), kText.size()) < 0) _exit(mimetra::cli::kInterrupted);
   _exit(mimetra::cli::kInterrupted);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <condition_variable>
 #include <cstdio>
+#include <functional>
 #include <iostream>
 #include <mutex>
 #include <stop_token>
@@ -36,7 +37,7 @@ std::atomic<bool> interrupted = false;
 /// shows that a long step is at work.
 class Bar {
  public:
-  Bar(std::string title, bool shown) : title_(std::move(title)) {
+  Bar(std::string title, bool shown) : title_(std::move(title)), shown_(shown) {
     if (shown) ticker_ = std::jthread([this](const std::stop_token& stop) { tick(stop); });
   }
   ~Bar() { end(); }
@@ -49,22 +50,29 @@ class Bar {
     return !interrupted;
   }
 
+  /// Says something in the place of the line.
+  void say(const std::function<void()>& text) {
+    const std::scoped_lock lock(mutex_);
+    clear();
+    text();
+  }
+
   void end() {
-    ticker_ = {};
+    const std::scoped_lock lock(mutex_);
+    shown_ = false;
     clear();
   }
 
-  /// Makes room for other lines.
+ private:
+  /// \pre the mutex is held
   void clear() {
-    const std::scoped_lock lock(mutex_);
     if (is_drawn_) std::fprintf(stderr, "\r\033[K");
     is_drawn_ = false;
   }
 
- private:
   void draw() {
     const std::scoped_lock lock(mutex_);
-    if (!ticker_.joinable()) return;
+    if (!shown_) return;
     std::fprintf(stderr, "\r%s %3d %%", title_.c_str(), std::max(0, percent_.load()));
     if (const double seconds = stopwatch_.seconds(); seconds >= 1) {
       std::fprintf(stderr, " %.0f s", std::floor(seconds));
@@ -87,8 +95,9 @@ class Bar {
   Stopwatch stopwatch_;
   std::atomic<int> percent_ = -1;
   std::mutex mutex_;
+  bool shown_;
   bool is_drawn_ = false;
-  std::jthread ticker_;
+  std::jthread ticker_;  // ends before the others do
 };
 
 bool shows_bar(const Request& request) {
@@ -162,13 +171,11 @@ void run_command(const OperationTable& table, const Request& request, const Rank
   std::vector<std::string> warnings;
   asked.log = [&bar, &warnings](LogLevel level, const std::string& text) {
     const std::string message = with_options_spelled(text, spelled_for_command);
-    bar.clear();
-    if (level == LogLevel::warning) {
-      spdlog::warn(terminal_text(message));
-      warnings.push_back(message);
-    } else {
-      spdlog::info(terminal_text(message));
-    }
+    const bool is_warning = level == LogLevel::warning;
+    if (is_warning) warnings.push_back(message);
+    bar.say([&] {
+      is_warning ? spdlog::warn(terminal_text(message)) : spdlog::info(terminal_text(message));
+    });
   };
   Call call(table, std::move(asked));
   call.load();

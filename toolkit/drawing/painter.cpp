@@ -63,12 +63,14 @@ std::string png_of(const Image& image) {
 DrawingSession::DrawingSession() : window_(painter().one_window()) {}
 
 double drawing_bytes(const Sheet& sheet) {
-  // Colour and depth in each of four samples a pixel, once resolved, once read, once as PNG.
-  constexpr double kBytesPerPixel = 64;
+  // Colour and depth in each of four samples a pixel, once resolved, once read, once as PNG, and
+  // what is beside: measured.
+  constexpr double kBytesPerPixel = 86;
   // OpenGL without a graphics card, which compiles its shaders: measured for pictures of any size.
-  constexpr double kOpenGl = 90e6;
-  // Positions, normals, colours and corners, here and in OpenGL: measured with a million vertices.
-  constexpr double kBytesPerVertex = 200;
+  constexpr double kOpenGl = 135e6;
+  // Positions, normals, colours and corners, here and in OpenGL: measured with 5 and 325 thousand
+  // vertices in 1 to 9 tiles.
+  constexpr double kBytesPerVertex = 240;
   const SheetLayout layout = SheetLayout::of(sheet);
   double vertices = 0;
   for (const TileRow& row : sheet.rows) {

@@ -176,10 +176,12 @@ void remove_quietly(const fs::path& path) noexcept {
   }
 }
 
-/// Temporary names that are in use, for remove_pending_outputs().
+/// Temporary names that are in use, and folders that were made for them, the outer first; for
+/// remove_pending_outputs().
 struct TemporaryNames {
   std::mutex mutex;
   std::set<fs::path> names;
+  std::vector<fs::path> parents;
 };
 
 TemporaryNames& temporary_names() {
@@ -343,7 +345,11 @@ std::error_code PendingOutput::create_parents() {
     missing.insert(missing.begin(), parent);
   }
   for (const fs::path& parent : missing) {
-    if (fs::create_directory(parent, error)) created_parents_.push_back(parent);
+    if (fs::create_directory(parent, error)) {
+      created_parents_.push_back(parent);
+      const std::scoped_lock lock(temporary_names().mutex);
+      temporary_names().parents.push_back(parent);
+    }
     if (error) return error;
   }
   return {};
@@ -569,6 +575,12 @@ void remove_pending_outputs() noexcept {
   constexpr int kAttempts = 3;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     for (const fs::path& name : temporary_names().names) remove_quietly(name);
+  }
+  std::error_code ignored;
+  std::vector<fs::path>& parents = temporary_names().parents;
+  // Those in which something is stay.
+  for (auto parent = parents.rbegin(); parent != parents.rend(); ++parent) {
+    fs::remove(*parent, ignored);
   }
 }
 

@@ -120,9 +120,9 @@ class PendingOutputs {
   std::vector<std::filesystem::path> stale_;
 };
 
-/// Removes what outputs of this process have written under temporary names, once those that are
-/// taking their places have done so. For a process that is about to end: none can be committed
-/// afterwards.
+/// Removes what outputs of this process have written under temporary names, and empty folders made
+/// for them, once outputs that are taking their places have done so. For a process that is about to
+/// end: none can be committed afterwards.
 void remove_pending_outputs() noexcept;
 
 /// Throws OutputError if writing `output` would replace one of `inputs`, or become a part of it: it

@@ -126,8 +126,8 @@ class DeflatedMember : public InputBytes {
 /// before memory is asked for.
 constexpr std::size_t kMostDeflated = 1100;
 
-/// Where a member is larger than this, it may be so many times as large as its packed bytes: a
-/// small file must not fill the memory.
+/// Members of more than 1 GB may unpack to 512 times their stored bytes: a small file must not fill
+/// the memory.
 constexpr std::size_t kUnpackedBytes = std::size_t{1} << 30, kUnpackedShare = 512;
 
 }  // namespace

@@ -218,7 +218,11 @@ Operation align_operation() {
   operation.shared = true;
   operation.memory = [](const Invocation& invocation) {
     const FieldSequence& sequence = invocation.get<FieldSequence>("sequence");
-    return sequence.is_in_memory() ? frame_bytes(*sequence.frames) : stored_bytes(*sequence.frames);
+    const double of_frames =
+        sequence.is_in_memory() ? frame_bytes(*sequence.frames) : stored_bytes(*sequence.frames);
+    // In memory at once: the pose that is read, moved, compared and written.
+    constexpr double kPoses = 4;
+    return of_frames + kPoses * frame_bytes(*sequence.frames) / sequence.frames->frames();
   };
   return operation;
 }

@@ -20,7 +20,7 @@ std::string softer_border(const Parameters& parameters) {
   }
   if (parameters.is_set("triangles")) excluded.emplace_back("--triangles");
   const std::string without = excluded.empty() ? "" : " without " + joined(excluded, ", ", " and ");
-  return "--falloff 0.1" + without + " lets the motion fade, a larger one more softly";
+  return "--falloff 0.3" + without + " lets the motion fade more softly";
 }
 
 /// A text of the pipeline, and how the command helps it.

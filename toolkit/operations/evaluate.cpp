@@ -99,6 +99,7 @@ Outcome run_evaluate(const Invocation& invocation) {
   if (options.regions.select == Selector::transfer && !invocation.parameters.is_set("k")) {
     options.counts = {};
   }
+  set_usual_border(invocation, options.solving);
   options.given = painted_region_of(invocation);
   options.threads = invocation.threads;
   options.ranks = invocation.ranks;

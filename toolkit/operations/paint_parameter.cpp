@@ -122,13 +122,12 @@ std::optional<GivenRegions> painted_region_of(const Invocation& invocation) {
   return GivenRegions{*text, painted_region(painting.weights, triangles)};
 }
 
-Json weights_report(const Eigen::VectorXd& weights, const Parameters& parameters) {
-  const auto json_of = [](const std::optional<std::string>& text) {
-    return text ? Json(*text) : Json(nullptr);
-  };
+Json weights_report(const Eigen::VectorXd& weights, const Parameters& parameters,
+                    const std::optional<Length>& falloff) {
+  const std::optional<std::string> paint = parameters.optional_text("paint");
   const auto ones = (weights.array() == 1).count(), zeros = (weights.array() == 0).count();
-  return {{"paint", json_of(parameters.optional_text("paint"))},
-          {"falloff", json_of(parameters.optional_text("falloff"))},
+  return {{"paint", paint ? Json(*paint) : Json(nullptr)},
+          {"falloff", falloff ? Json(to_text(*falloff)) : Json(nullptr)},
           {"one", ones},
           {"between", weights.size() - ones - zeros},
           {"zero", zeros}};

@@ -22,6 +22,7 @@ void check_paint(const Invocation& invocation);
 std::optional<GivenRegions> painted_region_of(const Invocation& invocation);
 
 /// Where the weights of a target's vertices came from, and how many are 1, between and 0.
-Json weights_report(const Eigen::VectorXd& weights, const Parameters& parameters);
+Json weights_report(const Eigen::VectorXd& weights, const Parameters& parameters,
+                    const std::optional<Length>& falloff);
 
 }  // namespace mimetra

@@ -16,6 +16,7 @@
 #include "toolkit/pipeline/distance_memory.h"
 #include "toolkit/pipeline/joint_motion.h"
 #include "toolkit/pipeline/memory.h"
+#include "toolkit/pipeline/moving_parts.h"
 #include "toolkit/pipeline/region_selector.h"
 #include "toolkit/pipeline/simplified_regions.h"
 
@@ -97,7 +98,7 @@ Found found_by_energy(const Invocation& invocation, const RegionsCall& call) {
   Found found;
   const auto analysis = [&] {
     if (const auto given = given_components(invocation)) {
-      return analysis_of(*given, *sequence, call.analysis);
+      return analysis_of(*given, *sequence, moving_vertices(*sequence), call.analysis);
     }
     const Source source = prepare_source(sequence, source_options(invocation, call));
     found.head_motion = source.head_motion;

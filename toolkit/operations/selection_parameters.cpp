@@ -60,6 +60,24 @@ RegionChoiceOptions with_most_discs(RegionChoiceOptions options, const Parameter
   return options;
 }
 
+void set_usual_border(const Invocation& invocation, SolveOptions& options) {
+  static constexpr std::array kNames = {"falloff", "paint", "triangles", "anchor", "curve"};
+  const auto is_set = [&](const std::string& name) {
+    return invocation.parameters.find(name) && invocation.parameters.is_set(name);
+  };
+  const auto has_expressions = [](const NamedData& target) {
+    return std::get<ModelData>(target.data).model.average().expressions().size() > 0;
+  };
+  const RegionData* given = invocation.find<RegionData>("regions");
+  const bool has_border = given && given->regions.weights.size() > 0;
+  if (std::ranges::any_of(kNames, is_set) || has_border ||
+      options.vertex.outside == Outside::identity ||
+      std::ranges::any_of(invocation.inputs.at("target"), has_expressions)) {
+    return;
+  }
+  options.falloff = SolveOptions::kBareFalloff;
+}
+
 void refuse_options(const Parameters& parameters, const std::vector<std::string>& names,
                     const std::string& reason) {
   for (const std::string& name : names) {

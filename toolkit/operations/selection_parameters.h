@@ -2,7 +2,7 @@
 
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/operation.h"
-#include "toolkit/pipeline/region_choice.h"
+#include "toolkit/pipeline/solution.h"
 
 namespace mimetra {
 
@@ -26,6 +26,10 @@ void check_given_components(const Invocation& invocation);
 /// Throws UsageError where options of the call exclude each other or would have no effect: those of
 /// a decomposition where regions are chosen for the transfer, and vertices to solve for.
 void check_selection(const Invocation& invocation);
+
+/// Lets regions fade out where no target has expressions and no option says how they end: a hard
+/// border would tear the mesh.
+void set_usual_border(const Invocation& invocation, SolveOptions& options);
 
 /// Throws UsageError where one of the options is set, with the reason: "there are no regions".
 void refuse_options(const Parameters& parameters, const std::vector<std::string>& names,

@@ -82,6 +82,7 @@ TransferOptions options_of(const Invocation& invocation) {
   TransferOptions options =
       transfer_parameters(&std::get<FieldSequence>(source.data)).read(invocation.parameters);
   options.full = takes_all_triangles(invocation);
+  if (!options.full) set_usual_border(invocation, options.solving);
   options.source = described(std::move(options.source), source);
   options.regions = with_most_discs(std::move(options.regions), invocation.parameters);
   if (auto painted = painted_region_of(invocation)) {
@@ -105,7 +106,7 @@ NamedData weights_of(const NamedData& target, const Solution& solution) {
 
 /// `has_own_regions` where the source's are not those of this target.
 Json report_of(const NamedData& target, const TransferredTarget& transferred, bool has_own_regions,
-               const Parameters& parameters) {
+               const Parameters& parameters, const TransferOptions& options) {
   const auto& [solution, regions, similarity, error, pairing, match, error_seconds, openings,
                weights] = transferred;
   Json json = {{"name", target.name},          {"output", nullptr},  {"de_all", error.de_all},
@@ -134,7 +135,7 @@ Json report_of(const NamedData& target, const TransferredTarget& transferred, bo
     if (has_own_regions) json["regions"] = report_of(*regions);
   }
   if (weights.size() > 0) {
-    json["weight"] = weights_report(weights, parameters);
+    json["weight"] = weights_report(weights, parameters, options.solving.falloff);
     json["de_inside"] = error.de_inside ? Json(*error.de_inside) : Json(nullptr);
   }
   if (solution.regional) {
@@ -236,7 +237,7 @@ void foresee_transfer(const Invocation& invocation) {
 
 /// What each target's results are, in the order of the targets.
 void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
-                 TransferResult& result) {
+                 const TransferOptions& options, TransferResult& result) {
   const std::vector<NamedData>& targets = invocation.inputs.at("target");
   const auto paths = invocation.wanted.find("out");
   const bool is_written = paths != invocation.wanted.end() && !paths->second.empty();
@@ -244,7 +245,8 @@ void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
   for (std::size_t t = 0; t < targets.size(); ++t) {
     TransferredTarget& transferred = result.targets[t];
     const bool has_own_regions = transferred.regions && !result.regions;
-    reports.push_back(report_of(targets[t], transferred, has_own_regions, invocation.parameters));
+    reports.push_back(
+        report_of(targets[t], transferred, has_own_regions, invocation.parameters, options));
     if (is_written) reports.back()["output"] = paths->second.at(t).string();
     if (has_own_regions) outcome.summary += summary_of(*transferred.regions);
     outcome.summary += summary_of(targets[t], transferred);
@@ -298,12 +300,12 @@ Outcome run_transfer(const Invocation& invocation) {
   check_outputs(invocation);
   const FrameSource& source = *invocation.get<FieldSequence>("source").frames;
   warn_of_guessed_rate(invocation, invocation.input("source").name, source.times_are_known());
-  TransferResult result = in_command_terms(invocation.parameters, [&] {
-    return transfer(source, targets_of(invocation), options_of(invocation));
-  });
+  const TransferOptions options = options_of(invocation);
+  TransferResult result = in_command_terms(
+      invocation.parameters, [&] { return transfer(source, targets_of(invocation), options); });
   Outcome outcome;
   Json report = Json::object();
-  add_targets(outcome, report, invocation, result);
+  add_targets(outcome, report, invocation, options, result);
   add_regions(outcome, report, invocation, result);
   if (invocation.wants("components-out")) {
     outcome.outputs["components-out"].push_back({"", std::move(*result.components)});

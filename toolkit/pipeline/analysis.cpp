@@ -133,6 +133,25 @@ std::vector<bool> both(std::vector<bool> inside, const std::vector<bool>& also) 
   return inside;
 }
 
+/// The parts with a vertex inside, which may be empty for all.
+std::vector<bool> parts_with(const std::vector<bool>& inside, const SurfaceParts& parts) {
+  std::vector<bool> with(parts.areas.size(), inside.empty());
+  for (std::size_t v = 0; v < inside.size(); ++v) {
+    if (inside[v]) with[static_cast<std::size_t>(parts.of_vertex[v])] = true;
+  }
+  return with;
+}
+
+MovingParts noted_moving_parts(const std::vector<VertexIndex>& moving, const Positions& rest,
+                               const Triangles& triangles, const Notes& notes) {
+  MovingParts found = moving_parts(moving, rest, triangles);
+  if (found.is_section) {
+    note(notes, "a small section of a connected part moves; lengths are shares of " +
+                    readable(found.diameter) + ", 1.5 times its diameter");
+  }
+  return found;
+}
+
 /// Components whose centres are inside; one that moves nothing there has none.
 Components centered_inside(Components components, const std::vector<bool>& inside) {
   if (inside.empty()) return components;
@@ -234,7 +253,10 @@ int component_count(const FrameSource& sequence, double size, const AnalysisOpti
   const double disc = std::numbers::pi * reach * reach;
   const SurfaceParts parts = surface_parts(sequence.rest(), sequence.triangles());
   double discs = 0;
-  for (const double area : parts.areas) discs += std::max(1.0, std::ceil(area / disc));
+  const std::vector<bool> counts = parts_with(options.inside, parts);
+  for (int p = 0; p < parts.count(); ++p) {
+    if (counts[p]) discs += std::max(1.0, std::ceil(parts.areas[p] / disc));
+  }
   double most = std::min(discs * sequence.frames(), 3.0 * sequence.vertices());
   if (!options.inside.empty()) {
     most = std::min(most, static_cast<double>(std::ranges::count(options.inside, true)));
@@ -258,12 +280,15 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
       distances_along(work.rest(), work.triangles(), distance_options(options));
   const bool reference = options.compatibility != Compatibility::none;
   const MovingParts moving =
-      moving_parts(*source.given, work.rest(), reference ? Notes() : options.notes);
+      noted_moving_parts(source.moving, work.rest(), work.triangles(), options.notes);
   const double size = moving.diameter;
   AnalysisOptions of_surface = options;
   if (!reference) {
-    of_surface.inside =
-        on_surface(both(options.inside, moving.vertices), distances, work.vertices());
+    std::vector<bool> inside = both(options.inside, moving.vertices);
+    if (!inside.empty() && std::ranges::find(inside, true) == inside.end()) {
+      throw MismatchError("where regions may lie nothing moves");
+    }
+    of_surface.inside = on_surface(std::move(inside), distances, work.vertices());
   }
   check_inside(of_surface.inside, work.vertices());
   decomposition.count = component_count(work, size, of_surface);
@@ -326,18 +351,19 @@ void check_components(const GivenComponents& given, const FrameSource& sequence)
 }
 
 Analysis analysis_of(const GivenComponents& given, const FrameSource& sequence,
-                     const AnalysisOptions& options) {
+                     const std::vector<VertexIndex>& moving, const AnalysisOptions& options) {
   check_components(given, sequence);
   const Components& components = given.components;
   SurfaceDistances distances =
       distances_along(components.rest, components.triangles, distance_options(options));
   check_inside(options.inside, components.vertices());
-  return {centered_inside(components, options.inside),
-          std::move(distances),
-          options.inside,
-          0,
-          options.distances.welding,
-          moving_parts(sequence, components.rest, options.notes).diameter};
+  return {
+      centered_inside(components, options.inside),
+      std::move(distances),
+      options.inside,
+      0,
+      options.distances.welding,
+      noted_moving_parts(moving, components.rest, components.triangles, options.notes).diameter};
 }
 
 }  // namespace mimetra

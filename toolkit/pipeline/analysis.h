@@ -56,8 +56,8 @@ struct SupportRange {
   double d_max;
 };
 
-/// Of what has this diameter. Throws OptionError (Topic::support_range) unless d_min is below
-/// d_max.
+/// In the unit of `diameter`, of which the two are shares. Throws OptionError
+/// (Topic::support_range) unless d_min is below d_max.
 SupportRange support_range(const Length& d_min, const Length& d_max, double diameter);
 
 /// The rest pose of a decomposition.
@@ -138,7 +138,7 @@ struct Analysis {
   std::vector<bool> inside = {};
   double seconds = 0;
   Welding welding = Welding::exact;
-  /// Diameter of the moving_parts(), of which lengths are shares.
+  /// Diameter of the moving_parts(), of which lengths are shares, but for those of a compatibility.
   double size = 0;
 };
 
@@ -184,9 +184,9 @@ struct GivenComponents {
 void check_components(const GivenComponents& given, const FrameSource& sequence);
 
 /// The same for components that are known already: of the options only the distances count, and
-/// where regions may lie, which moves the centres outside to the strongest vertices inside. Throws
-/// as check_components().
+/// where regions may lie, which moves the centres outside to the strongest vertices inside.
+/// `moving` are the vertices that move in the sequence. Throws as check_components().
 Analysis analysis_of(const GivenComponents& given, const FrameSource& sequence,
-                     const AnalysisOptions& options = {});
+                     const std::vector<VertexIndex>& moving, const AnalysisOptions& options = {});
 
 }  // namespace mimetra

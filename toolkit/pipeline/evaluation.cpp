@@ -76,7 +76,7 @@ EvaluatedTransfer evaluate_full(const Source& source, const Target& target,
 EvaluatedTransfer evaluate_by(const Regions& regions, const EvaluatedTransfer& full,
                               const Source& source, const Target& target,
                               const SolveOptions& options) {
-  const Selection selection = bordered_selection(regions, target, options);
+  const Selection selection = bordered_selection(regions, target, options, source.moving);
   EvaluatedTransfer result = solved(source, target, selection, options);
   EvaluationRow& row = result.row;
   result.regions = with_border(regions, selection, target);

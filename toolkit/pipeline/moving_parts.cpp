@@ -1,15 +1,11 @@
 #include "toolkit/pipeline/moving_parts.h"
 
 #include "toolkit/mesh/surface_parts.h"
-#include "toolkit/mesh/text.h"
 #include "toolkit/mesh/triangle_quality.h"
 #include "toolkit/splocs/decomposition_options.h"
 
 namespace mimetra {
 
-namespace {
-
-/// Of the vertices that triangles with area use, those that move.
 std::vector<VertexIndex> moving_vertices(const FrameSource& sequence) {
   const std::vector<VertexIndex> surface = surface_vertices(sequence.rest(), sequence.triangles());
   const double least = kLeastMotion * sequence.diameter();
@@ -29,11 +25,8 @@ std::vector<VertexIndex> moving_vertices(const FrameSource& sequence) {
   return moving;
 }
 
-}  // namespace
-
-MovingParts moving_parts(const FrameSource& sequence, const Positions& rest) {
-  const Triangles& triangles = sequence.triangles();
-  const std::vector<VertexIndex> moving = moving_vertices(sequence);
+MovingParts moving_parts(const std::vector<VertexIndex>& moving, const Positions& rest,
+                         const Triangles& triangles) {
   const double size = diameter_of_parts(rest, triangles, moving);
   MovingParts found{{}, size};
   if (moving.empty()) return found;
@@ -46,17 +39,6 @@ MovingParts moving_parts(const FrameSource& sequence, const Positions& rest) {
   if (subject.is_section) {
     found.is_section = true;
     found.diameter = subject.growth() * diameter(rest(moving, Eigen::all));
-  }
-  return found;
-}
-
-MovingParts moving_parts(const FrameSource& sequence, const Positions& rest, const Notes& notes) {
-  MovingParts found = moving_parts(sequence, rest);
-  if (found.is_section) {
-    note(notes,
-         "what moves spans less than a third of the part that it is on; lengths are shares "
-         "of " +
-             readable(found.diameter) + ", 1.5 times its size");
   }
   return found;
 }

@@ -3,15 +3,19 @@
 #include <vector>
 
 #include "toolkit/mesh/frame_source.h"
-#include "toolkit/pipeline/note.h"
 
 namespace mimetra {
+
+/// Vertices of triangles with area that are farther than kLeastMotion of the diameter from the rest
+/// pose in some frame, ascending. Reads every frame. Throws what reading throws.
+std::vector<VertexIndex> moving_vertices(const FrameSource& sequence);
 
 /// The connected parts of a surface in which something moves. Lengths on a sequence, such as the
 /// radius of regions, are shares of their size: a body or clothes that keep still beside a face do
 /// not count.
 struct MovingParts {
-  /// Those that are on one (N); empty for all, also where the other parts lie within these.
+  /// True for vertices of these parts (N); empty for all, also where the other parts lie within
+  /// these.
   std::vector<bool> vertices = {};
   /// Largest distance between two of them.
   double diameter = 0;
@@ -20,12 +24,8 @@ struct MovingParts {
   bool is_section = false;
 };
 
-/// Measured on `rest` (N x 3). A vertex moves where it is farther than kLeastMotion from the
-/// sequence's rest pose in some frame; where none does, all parts count. Reads every frame. Throws
-/// what reading throws.
-MovingParts moving_parts(const FrameSource& sequence, const Positions& rest);
-
-/// The same; notes a section.
-MovingParts moving_parts(const FrameSource& sequence, const Positions& rest, const Notes& notes);
+/// Of the vertices `moving`, on `rest` (N x 3) and `triangles`; all parts where none moves.
+MovingParts moving_parts(const std::vector<VertexIndex>& moving, const Positions& rest,
+                         const Triangles& triangles);
 
 }  // namespace mimetra

@@ -8,6 +8,7 @@
 
 #include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/pipeline/moving_parts.h"
 #include "toolkit/regions/falloff.h"
 #include "toolkit/transfer/following_parts.h"
 
@@ -111,15 +112,18 @@ void check_full_weight(const std::string& name, const Eigen::VectorXd& weights) 
                         readable(weights.maxCoeff()));
 }
 
-/// Regions of a mesh without expressions do not end at once: what lies outside would be torn from
-/// them, or held where it holds the face back.
-std::optional<Length> falloff_of(bool is_painted, const Target& target,
-                                 const SolveOptions& options) {
-  if (options.falloff || is_painted || options.vertex.outside == Outside::identity ||
-      target.model.get().expressions().size() > 0) {
-    return options.falloff;
+/// What the falloff on a target is a share of.
+double size_of_border(const Target& target, const Eigen::VectorXd& weights,
+                      const std::vector<VertexIndex>& moving) {
+  const BlendshapeModel& model = target.model;
+  if (!target.pairing && !moving.empty()) {
+    return moving_parts(moving, model.neutral(), model.triangles()).diameter;
   }
-  return SolveOptions::kBareFalloff;
+  std::vector<VertexIndex> inside;
+  for (VertexIndex v = 0; v < weights.size(); ++v) {
+    if (weights[v] > 0) inside.push_back(v);
+  }
+  return diameter_of_parts(model.neutral(), model.triangles(), inside);
 }
 
 }  // namespace
@@ -155,10 +159,9 @@ Eigen::VectorXd carried_weights(const Eigen::VectorXd& weights, const Pairing& p
 }
 
 Selection bordered_selection(const Regions& regions, const Target& target,
-                             const SolveOptions& options) {
+                             const SolveOptions& options, const std::vector<VertexIndex>& moving) {
   Selection selection = selection_of(regions, target);
-  const std::optional<Length> falloff = falloff_of(regions.weights.size() > 0, target, options);
-  const bool fades = falloff && !options.per_region;
+  const bool fades = options.falloff && !options.per_region;
   if (regions.weights.size() == 0 && !fades) return selection;
   const BlendshapeModel& model = target.model;
   const Weld weld = weld_of(model.neutral(), options.distances.welding);
@@ -177,16 +180,12 @@ Selection bordered_selection(const Regions& regions, const Target& target,
   if (fades) {
     check_option(options, SolveOptions::kFalloff);
     check_full_weight(target.name, weights);
-    std::vector<VertexIndex> inside;
-    for (VertexIndex v = 0; v < weights.size(); ++v) {
-      if (weights[v] > 0) inside.push_back(v);
-    }
     DistanceOptions of_distances = options.distances;
     of_distances.threads = options.threads;
     const SurfaceDistances distances =
         distances_along(model.neutral(), model.triangles(), of_distances);
     weights = fading_out(weights, model.triangles(), weld,
-                         falloff->in(diameter_of_parts(model.neutral(), model.triangles(), inside)),
+                         options.falloff->in(size_of_border(target, weights, moving)),
                          [&distances](std::span<const VertexIndex> sources) {
                            return distances.from_nearest(sources);
                          });

@@ -23,14 +23,16 @@ Eigen::VectorXd carried_weights(const Eigen::VectorXd& weights, const Pairing& p
 /// What a transfer by regions of the source looks at on a target: selection_of(), with the weights
 /// that the regions have there, faded out around the vertices of weight 1 over the falloff of the
 /// options; FollowingParts, of a target with the source's faces where it fades out, take the weight
-/// of the surface around them. Without both, and with weights of each region, whose falloff is
-/// their own, the border is hard.
+/// of the surface around them. Shares of lengths are those of the moving_parts(), where vertices
+/// that move are given and the target has the source's faces, elsewhere of the parts with a weight.
+/// Without both, and with weights of each region, whose falloff is their own, the border is hard.
 ///
 /// Throws OptionError (Topic::no_full_weight) where nothing has the weight 1 that could fade out,
 /// MismatchError where no vertex of the target has a weight, std::invalid_argument for a falloff
 /// out of range, and what distances_along() throws. \pre a MatchedTarget
 Selection bordered_selection(const Regions& regions, const Target& target,
-                             const SolveOptions& options);
+                             const SolveOptions& options,
+                             const std::vector<VertexIndex>& moving = {});
 
 /// Regions of the source with the border that they have on a target of the same faces; for a paired
 /// one they are what they were.

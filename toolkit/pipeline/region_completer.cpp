@@ -43,7 +43,7 @@ RegionCompleter::RegionCompleter(const Source& source, const RegionChoiceOptions
       triangles_(source.sequence->triangles()),
       options_(options),
       radius_(kAddedRadius *
-              options.radius.in(moving_parts(*source.given, rest_, analysis.notes).diameter)),
+              options.radius.in(moving_parts(source.moving, rest_, triangles_).diameter)),
       inside_(analysis.inside) {
   DistanceOptions distances = analysis.distances;
   distances.threads = analysis.threads;

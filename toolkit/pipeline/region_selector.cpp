@@ -65,11 +65,13 @@ RegionSelector::RegionSelector(const Source& source, const RegionChoiceOptions& 
     : rest_(source.sequence->rest()),
       triangles_(source.sequence->triangles()),
       options_(options),
-      analysis_(analysis),
-      radius_(kDiscRadius *
-              options.radius.in(moving_parts(*source.given, rest_, analysis.notes).diameter)) {
+      analysis_(analysis) {
   check_options(options);
   options_.select = Selector::transfer;
+  const MovingParts moving = moving_parts(source.moving, rest_, triangles_);
+  radius_ = kDiscRadius * options.radius.in(moving.diameter);
+  inside_ = analysis.inside;
+  if (inside_.empty()) inside_ = moving.vertices;
 }
 
 const std::vector<Disc>& RegionSelector::candidates() {
@@ -81,7 +83,7 @@ const std::vector<Disc>& RegionSelector::candidates() {
   candidates_ =
       farthest_discs(rest_, triangles_,
                      [&](std::span<const VertexIndex> sources) { return distances.once(sources); },
-                     {.radius = radius_, .count = kCandidates, .inside = analysis_.inside});
+                     {.radius = radius_, .count = kCandidates, .inside = inside_});
   return candidates_;
 }
 

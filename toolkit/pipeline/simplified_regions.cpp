@@ -50,11 +50,12 @@ SimplifiedRegions regions_by_simplified(const Source& source, const SimplifyOpti
   Source on_kept = source;
   on_kept.sequence = renumbered(source.sequence, result.mesh.connectivity, kept);
   on_kept.given = renumbered(source.given, result.mesh.connectivity, kept);
+  on_kept.moving = moving_vertices(on_kept.motion.empty() ? *on_kept.sequence : *on_kept.given);
   AnalysisOptions of_kept_mesh = of_kept(analysis, kept);
   of_kept_mesh.progress = part_of(analysis.progress, kSimplifying, kAnalysed);
   const FrameSource& whole = *source.sequence;
   RegionChoiceOptions of_choice = choice;
-  const double size = moving_parts(*source.given, whole.rest()).diameter;
+  const double size = moving_parts(source.moving, whole.rest(), whole.triangles()).diameter;
   of_choice.radius = Length::of(choice.radius.in(size));
   of_choice.regions.coverage.reset();  // of the energy on all vertices
   const Regions found = choose_regions(analyse(on_kept, of_kept_mesh), of_choice);

@@ -71,8 +71,8 @@ struct SolveOptions {
   bool per_region = false;
   /// Geodesic distance from a region's rim over which it fades out, on the target: the weights of
   /// each region (there kUsualFalloff where none is given), otherwise the motion that vertices
-  /// take (bordered_selection()). By default that is kBareFalloff on targets without expressions,
-  /// and elsewhere a region's border is hard.
+  /// take (bordered_selection()); without it a region's border is hard, and tears meshes without
+  /// expressions from what lies outside: kBareFalloff is wide enough for them.
   std::optional<Length> falloff = {};
   /// Its threads, ranks, progress, edges and pairing are those of the solve.
   LocalWeightsOptions local = {};

@@ -11,6 +11,7 @@
 #include "toolkit/mesh/text.h"
 #include "toolkit/mesh/triangle_quality.h"
 #include "toolkit/mesh/whole_motion.h"
+#include "toolkit/pipeline/moving_parts.h"
 
 namespace mimetra {
 
@@ -312,6 +313,7 @@ Source prepare_source(Shared sequence, const SourceOptions& options) {
   if (source.neutral_is_known && !options.model_driven && !is_elsewhere) {
     note_other_face(source, options);
   }
+  source.moving = moving_vertices(source.motion.empty() ? *source.sequence : *source.given);
   if (is_mean(options)) source.sequence = with_rest(source.sequence, mean_pose(*source.sequence));
   return source;
 }

@@ -126,6 +126,9 @@ struct Source {
   std::shared_ptr<const FrameSource> sequence;
   /// Of the head (F); empty where none was looked for.
   std::vector<RigidTransform> motion;
+  /// moving_vertices() of the sequence, or, where head motion was taken out, as it came: a body
+  /// that keeps still moves against a head that is held.
+  std::vector<VertexIndex> moving = {};
   HeadMotionTaken head_motion = {};
   /// The rest pose was asked for.
   bool rest_is_given = false;

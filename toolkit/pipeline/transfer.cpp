@@ -39,7 +39,7 @@ Analysis analysis_for(const Source& source, const TransferOptions& options) {
   of_analysis.notes = options.notes;
   of_analysis.progress = part_of(options.progress, kSourceShare, kRegionShare);
   if (const auto* given = std::get_if<GivenComponents>(&options.given)) {
-    return analysis_of(*given, *source.given, of_analysis);
+    return analysis_of(*given, *source.sequence, source.moving, of_analysis);
   }
   return analyse(source, of_analysis);
 }
@@ -300,7 +300,7 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
     std::optional<Regions> regions = regions_for(target, placed.source, choice, of_solving);
     of_solving.progress = part_of(until_error, solved, 1);
     const Selection selection =
-        regions ? bordered_selection(*regions, target, of_solving) : whole(target);
+        regions ? bordered_selection(*regions, target, of_solving, source.moving) : whole(target);
     if (regions) regions = with_border(std::move(*regions), selection, target);
     Solution solution = solve(placed.source, target, selection, of_solving);
     const Stopwatch of_error;

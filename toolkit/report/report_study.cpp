@@ -108,7 +108,7 @@ class RunSteps {
     }
     const auto given = given_components(call_);
     if (!given) return regions_of(main_count(call_.parameters), progress);
-    Analysis analysis = analysis_of(*given, sequence_, analysis_options(progress));
+    Analysis analysis = analysis_of(*given, sequence_, source_.moving, analysis_options(progress));
     return found_by(std::move(analysis), 0);
   }
 
@@ -142,6 +142,7 @@ class RunSteps {
  private:
   static SolveOptions solve_options(const Invocation& call, const Progress& progress) {
     SolveOptions options = solving_parameters().read(call.parameters);
+    if (call.inputs.contains("target")) set_usual_border(call, options);
     options.threads = call.threads;
     options.progress = progress;
     options.notes = warnings_of(call);

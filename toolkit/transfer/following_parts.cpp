@@ -109,8 +109,8 @@ FollowingParts::FollowingParts(Positions rest, const Triangles& triangles, const
   find(triangles, weld, moves, {});
 }
 
-/// By the triangles that move (M). What parts follow are the vertices `carried`, or, where none are
-/// named, all of the parts that move.
+/// Finds the parts without a moving triangle; `moves` has an entry for each triangle (M). They
+/// follow the vertices `carried`, or, if none are named, all of the other parts.
 void FollowingParts::find(const Triangles& triangles, const Weld& weld,
                           const std::vector<bool>& moves, std::vector<VertexIndex> carried) {
   const Triangles welded = weld.welded(triangles);

@@ -16,7 +16,8 @@ Eigen::VectorXd triangle_weights(const Triangles& triangles, const Eigen::Vector
 /// surface bends over the border's width and not at its ends; a border that is narrow for the
 /// motion still creases. Where the weights are constant nothing is changed.
 ///
-/// How much a triangle is of the border: b_i = min(1, |grad phi_i| diameter / 2). Smoothness is
+/// How much a triangle is of the border: b_i = min(1, |grad phi_i| diameter / 2), with the diameter
+/// of the parts that have a weight. Smoothness is
 /// that of a plate which bends over the length kBend l, whatever the size of triangles: l is the
 /// border's width, the mean of |grad phi| over that of its square, at most diameter / 2.
 class SoftBorder {

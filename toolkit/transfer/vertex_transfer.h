@@ -123,7 +123,7 @@ struct VertexTransferOptions {
 /// Where vertices take a share of the motion (VertexTransferOptions::weights), the deformation
 /// fades as SoftBorder describes: weights of 1 everywhere give what none give, bit by bit, and
 /// vertices of weight 0 stay exactly, but those that follow. Each piece moves, on average over its
-/// vertices, by that share of the source's motion, if SoftBorder::bearable().
+/// vertices, by that share of the source's motion, within what is SoftBorder::bearable().
 ///
 /// [Sumner, Popovic. Deformation Transfer for Triangle Meshes. ACM TOG 23(3), 2004]
 class VertexTransfer {
