@@ -177,7 +177,9 @@ Invocation transfer_of_the_grid(const OperationTable& table) {
 TEST(Operations, RunOnValuesWithoutFiles) {
   const OperationTable& table = toolkit();
   const MeshSequence source = waving_grid();
-  const Outcome outcome = table.find("transfer")->run(transfer_of_the_grid(table));
+  Invocation invocation = transfer_of_the_grid(table);
+  invocation.parameters.set("falloff", std::string("1e-9abs"));  // a hard border
+  const Outcome outcome = table.find("transfer")->run(invocation);
   const MeshSequence& result =
       std::get<FieldSequence>(outcome.outputs.at("out").front().data).sequence();
   // The same mesh as target: the source's deformation inside the regions is the target's.

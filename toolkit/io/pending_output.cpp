@@ -355,14 +355,15 @@ std::error_code PendingOutput::create_parents() {
   return {};
 }
 
-/// Another run that began at the same time may remove parents that it made and found empty.
+/// Another run that began at the same time may remove parents that it made and found empty: they
+/// are gone, or were there a moment ago.
 void PendingOutput::create_temporary() {
   constexpr int kAttempts = 100;
   std::error_code error;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     error = create_parents();
     if (!error) temporary_ = make_temporary_beside(target_, kind_, error);
-    if (error != std::errc::no_such_file_or_directory) break;
+    if (error != std::errc::no_such_file_or_directory && error != std::errc::file_exists) break;
   }
   if (error) throw OutputError(target_.string(), cannot_write(error));
   remember(temporary_);
