@@ -96,10 +96,8 @@ TEST_F(PaintParameter, IsAFileWhereItNamesNoField) {
 TEST_F(PaintParameter, IsReportedWithTheNumbersOfVertices) {
   Eigen::VectorXd weights(6);
   weights << 0, 0, 0, 0.5, 1, 1;
-  Parameters parameters({paint_parameter(), {"falloff", ParameterKind::length, {}, ""}});
-  parameters.set("falloff", std::string("12abs"));
   EXPECT_EQ(
-      weights_report(weights, parameters),
+      weights_report(weights, Parameters({paint_parameter()}), Length::of(12)),
       Json({{"paint", nullptr}, {"falloff", "12abs"}, {"one", 2}, {"between", 1}, {"zero", 3}}));
 }
 

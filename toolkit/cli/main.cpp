@@ -125,7 +125,7 @@ void wait_for_interrupt(int milliseconds) {
 /// Gives an interrupted run a moment to end at its next step; then, or at a second interrupt,
 /// removes temporary files and ends the process. A library's factorization has no steps.
 void end_after_interrupt() {
-  constexpr int kMoment = 1000;
+  constexpr int kMoment = 800;
   wait_for_interrupt(-1);
   char byte = 0;
   if (read(interrupts[0], &byte, 1) != 1) return;
