@@ -7,12 +7,17 @@ from mimetra_blender import results
 
 
 class Caches(HostTest):
-    def transferred(self, *options):
-        """The command's positions of the target without expressions."""
-        mesh, out = self.path / "mesh.ply", self.path / "out.npy"
-        command("convert", self.actor, "-o", mesh, "--force")
-        command("transfer", self.take, mesh, *options, "-o", out, "--force")
+    def transferred(self, target, *options):
+        """The command's positions of a target."""
+        out = self.path / "out.npy"
+        command("transfer", self.take, target, *options, "-o", out, "--force")
         return np.load(out)
+
+    def mesh(self):
+        """The target without expressions."""
+        mesh = self.path / "mesh.ply"
+        command("convert", self.actor, "-o", mesh, "--force")
+        return mesh
 
     def test_a_target_without_shape_keys_gets_a_mesh_cache(self):
         bare = self.bare_target()
@@ -24,11 +29,12 @@ class Caches(HostTest):
                 modifier = bare.modifiers[0]
                 self.assertEqual((modifier.name, modifier.cache_format), ("mimetra", cache_format))
                 self.assertEqual(len(bare.modifiers), 2)
-                self.assert_moves_like(bare, self.transferred("-k", 12))
+                self.assert_moves_like(bare, self.transferred(self.mesh(), "-k", 12))
 
     def test_vertex_space_gets_a_mesh_cache_where_there_are_shape_keys_too(self):
         bpy.ops.mimetra.transfer(target="target", k=12, space="vertex")
-        self.assert_moves_like(self.target, self.transferred("-k", 12))
+        self.assert_moves_like(self.target,
+                               self.transferred(self.actor, "-k", 12, "--space", "vertex"))
         self.assertIsNone(self.target.data.shape_keys.animation_data)
 
     def test_shape_keys_take_the_place_of_a_mesh_cache(self):
@@ -70,7 +76,7 @@ class Caches(HostTest):
         bare = self.bare_target()
         bpy.ops.mimetra.transfer(target="bare", full=True, frame_start=11, frame_end=111,
                                  frame_step=20)
-        expected = self.transferred("--full", "--frames", "10:111:20")
+        expected = self.transferred(self.mesh(), "--full", "--frames", "10:111:20")
         for index, frame in enumerate(range(11, 112, 20)):
             self.assert_close(self.shown(bare, frame), expected[index], f"frame {frame}")
 

@@ -194,8 +194,8 @@ Selection bordered_selection(const Regions& regions, const Target& target,
     weights = FollowingParts(model.neutral(), model.triangles(), weld, *target.pairing)
                   .with_surface(std::move(weights));
   } else if (fades) {
-    weights = FollowingParts(model.neutral(), model.triangles(), weld, weights)
-                  .with_surface(std::move(weights));
+    const FollowingParts following(model.neutral(), model.triangles(), weld, weights);
+    weights = following.with_surface(std::move(weights));
   }
   selection.triangles = triangles_in(weights, model.triangles());
   for (Eigen::Index v = 0; v < weights.size(); ++v) selection.inside[v] = weights[v] > 0;
