@@ -93,8 +93,8 @@ bool lies_against(const std::vector<VertexIndex>& part, const Positions& rest,
 FollowingParts::FollowingParts(Positions rest, const Triangles& triangles, const Weld& weld,
                                const Pairing& pairing)
     : rest_(std::move(rest)), without_motion_(rest_.rows(), false) {
-  std::vector<bool> moves;
-  for (int t = 0; t < triangles.rows(); ++t) moves.push_back(pairing.triangles().has_partner(t));
+  std::vector<bool> moves(triangles.rows());
+  for (int t = 0; t < triangles.rows(); ++t) moves[t] = pairing.triangles().has_partner(t);
   const std::vector<VertexIndex> carried = pairing.carried_vertices();
   if (carried.size() >= 3) find(triangles, weld, moves, carried);
 }
@@ -102,9 +102,9 @@ FollowingParts::FollowingParts(Positions rest, const Triangles& triangles, const
 FollowingParts::FollowingParts(Positions rest, const Triangles& triangles, const Weld& weld,
                                const Eigen::VectorXd& weights)
     : rest_(std::move(rest)), without_motion_(rest_.rows(), false) {
-  std::vector<bool> moves;
-  for (const auto& corners : triangles.rowwise()) {
-    moves.push_back((weights(corners).array() > 0).any());
+  std::vector<bool> moves(triangles.rows());
+  for (int t = 0; t < triangles.rows(); ++t) {
+    moves[t] = (weights(triangles.row(t)).array() > 0).any();
   }
   find(triangles, weld, moves, {});
 }
