@@ -20,9 +20,10 @@ constexpr std::size_t kVertices = 1000;
 /// Up to so many of 0 .. count - 1, at even distances.
 std::vector<int> spread_out(int count, int most) {
   const int taken = std::min(count, most);
-  std::vector<int> chosen;
+  std::vector<int> chosen(static_cast<std::size_t>(taken));
   for (int i = 0; i < taken; ++i) {
-    chosen.push_back(static_cast<int>(std::int64_t{i} * (count - 1) / std::max(1, taken - 1)));
+    chosen[static_cast<std::size_t>(i)] =
+        static_cast<int>(std::int64_t{i} * (count - 1) / std::max(1, taken - 1));
   }
   return chosen;
 }
