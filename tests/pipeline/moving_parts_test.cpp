@@ -10,8 +10,6 @@ namespace {
 
 using test::Noted;
 using test::take;
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 /// A plate of 40 x 3 whose first `columns` of vertices rise, each frame more of them.
 MeshSequence rising(const std::vector<int>& columns) {

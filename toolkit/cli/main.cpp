@@ -133,7 +133,7 @@ void end_after_interrupt() {
   mimetra::remove_pending_outputs();
   // By now another thread may hold what streams lock.
   constexpr std::string_view kText = "\nmimetra: error: cancelled\n";
-  if (write(STDERR_FILENO, kText.data(), kText.size()) < 0) _exit(mimetra::cli::kInterrupted);
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kText.data(), kText.size());
   _exit(mimetra::cli::kInterrupted);
 }
 

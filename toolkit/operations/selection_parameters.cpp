@@ -1,6 +1,7 @@
 #include "toolkit/operations/selection_parameters.h"
 
 #include <algorithm>
+#include <array>
 
 #include "toolkit/pipeline/solution.h"
 

@@ -22,10 +22,12 @@ Eigen::VectorXd carried_weights(const Eigen::VectorXd& weights, const Pairing& p
 
 /// What a transfer by regions of the source looks at on a target: selection_of(), with the weights
 /// that the regions have there, faded out around the vertices of weight 1 over the falloff of the
-/// options; FollowingParts, of a target with the source's faces where it fades out, take the weight
-/// of the surface around them. Shares of lengths are those of the moving_parts(), where vertices
-/// that move are given and the target has the source's faces, elsewhere of the parts with a weight.
-/// Without both, and with weights of each region, whose falloff is their own, the border is hard.
+/// options. FollowingParts take the weight of the surface around them: on a paired target, and with
+/// a falloff on one with the source's faces. Without weights and falloff the border is hard, and so
+/// with weights of each region, whose falloff is their own.
+///
+/// A falloff that is a share is one of the size of the moving_parts(), if the target has the
+/// source's faces and the vertices `moving` are given, and of the parts with a weight elsewhere.
 ///
 /// Throws OptionError (Topic::no_full_weight) where nothing has the weight 1 that could fade out,
 /// MismatchError where no vertex of the target has a weight, std::invalid_argument for a falloff

@@ -20,9 +20,9 @@ class RegionSelector {
   /// Frames that are looked at, evenly spread over the clip where it has more.
   static constexpr int kMostFrames = 100;
 
-  /// `source` gives the surface along which distances run, and its moving_parts(), on which discs
-  /// lie unless the analysis says where, as the options of the analysis say; they
-  /// are made when they are needed first. Throws std::invalid_argument for options out of range.
+  /// Discs lie on the source's moving_parts(), or where the analysis says. `source` gives the
+  /// surface along which distances run, as the options of the analysis say; they are made when they
+  /// are needed first. Throws std::invalid_argument for options out of range.
   RegionSelector(const Source& source, const RegionChoiceOptions& options,
                  const AnalysisOptions& analysis);
 

@@ -17,9 +17,9 @@ Eigen::VectorXd triangle_weights(const Triangles& triangles, const Eigen::Vector
 /// motion still creases. Where the weights are constant nothing is changed.
 ///
 /// How much a triangle is of the border: b_i = min(1, |grad phi_i| diameter / 2), with the diameter
-/// of the parts that have a weight. Smoothness is
-/// that of a plate which bends over the length kBend l, whatever the size of triangles: l is the
-/// border's width, the mean of |grad phi| over that of its square, at most diameter / 2.
+/// of the parts that have a weight. Smoothness is that of a plate which bends over the length
+/// kBend l, whatever the size of triangles. l is the border's width: the mean of |grad phi| over
+/// that of its square, at most diameter / 2.
 class SoftBorder {
  public:
   /// `rest` N x 3, `triangles` M x 3, `weights` N in [0, 1]. Degenerate triangles are of no border.

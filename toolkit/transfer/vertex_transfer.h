@@ -71,8 +71,7 @@ struct VertexTransferOptions {
   Weld weld = {};
   /// Of source and target where their faces differ, or null.
   std::shared_ptr<const Pairing> pairing = {};
-  /// Parts of the target that nothing is solved for; by default those without a partner, if there
-  /// is a pairing.
+  /// Parts of the target without a partner; by default found from the pairing.
   std::shared_ptr<const FollowingParts> following = {};
   /// Weight of triangles outside L for Outside::identity, and of those without partner, relative
   /// to the others.
