@@ -2,9 +2,9 @@
 add_library(mimetra_flags INTERFACE)
 target_compile_options(mimetra_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
 # GCC 12 sees overlapping copies in every `"text" + string` (its bug 105651), and takes OpenMesh's
-# property vectors and std::regex for uninitialised.
+# property vectors and std::regex for uninitialised, and Eigen's realloc for a use after free.
 target_compile_options(
-  mimetra_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-maybe-uninitialized>)
+  mimetra_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-maybe-uninitialized -Wno-use-after-free>)
 
 # Where files are compiled together, GCC takes their classes for those of a header.
 if(CMAKE_UNITY_BUILD)

@@ -4,7 +4,6 @@
 #include <Eigen/Cholesky>
 
 #include "fitting/fitted_frame.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/model/box_least_squares.h"
 #include "toolkit/model/second_differences.h"
 #include "toolkit/model/smooth_weights.h"
@@ -41,11 +40,12 @@ Eigen::VectorXd identity(const NormalEquations& equations) {
 
 class Alternation {
  public:
-  /// Smooth over time where there are `times`.
+  /// Smooth over time if there are `times`.
   Alternation(std::vector<FittedFrame> frames, const FitOptions& options,
-              const Eigen::VectorXd& times = {})
+              const Eigen::VectorXd& times, const Context& context)
       : frames_(std::move(frames)),
         options_(options),
+        context_(context),
         times_(times),
         smooth_(times.size() > 0),
         one_identity_(options.shape == FitOptions::Shape::clip) {}
@@ -64,7 +64,7 @@ class Alternation {
       const double now = energy(frames_, one_identity_, *options_.ridge) + bending();
       result.energies.push_back(now);
       if (has_converged(before, now, options_.tolerance)) break;
-      report_progress(options_.progress, double(result.iterations) / options_.iterations);
+      context_.report(double(result.iterations) / options_.iterations);
       before = now;
     }
     result.frames = std::move(frames_);
@@ -96,7 +96,8 @@ class Alternation {
     const Eigen::Index size = frames_.front().beta().size();
     if (size == 0) return;
     const Eigen::VectorXd lower = Eigen::VectorXd::Zero(size);
-    const Eigen::VectorXd upper = Eigen::VectorXd::Constant(size, options_.max_expression);
+    const Eigen::VectorXd upper = Eigen::VectorXd::Constant(
+        size, options_.max_expression.value_or(std::numeric_limits<double>::infinity()));
     std::vector<Eigen::MatrixXd> grams;
     Eigen::MatrixXd h(frames_.size(), size);
     for (std::size_t f = 0; f < frames_.size(); ++f) {
@@ -140,6 +141,7 @@ class Alternation {
 
   std::vector<FittedFrame> frames_;
   const FitOptions& options_;
+  const Context& context_;
   Eigen::VectorXd times_;
   bool smooth_;
   bool one_identity_;
@@ -148,13 +150,14 @@ class Alternation {
 
 }  // namespace
 
-FittedClip fit_alternating(std::vector<FittedFrame> frames, const FitOptions& options) {
-  return Alternation(std::move(frames), options).run();
+FittedClip fit_alternating(std::vector<FittedFrame> frames, const FitOptions& options,
+                           const Context& context) {
+  return Alternation(std::move(frames), options, {}, context).run();
 }
 
 FittedClip fit_smoothly(std::vector<FittedFrame> frames, const FitOptions& options,
-                        const Eigen::VectorXd& times) {
-  return Alternation(std::move(frames), options, times).run();
+                        const Eigen::VectorXd& times, const Context& context) {
+  return Alternation(std::move(frames), options, times, context).run();
 }
 
 }  // namespace mimetra

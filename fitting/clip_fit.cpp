@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "fitting/followed_face.h"
-#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 
@@ -20,14 +19,18 @@ std::vector<int> frames_between(int from, int to) {
   return frames;
 }
 
-std::optional<NeutralDistance> halves_distance(const ClipFit& clip, const FittedCoefficients& fit) {
+std::optional<NeutralDistance> halves_distance(const ClipFit& clip, const FittedCoefficients& fit,
+                                               const Context& context) {
   constexpr int kFewestOfHalf = 10;
   const int frames = fit.frames(), half = frames / 2;
   const bool enough = (fit.landmarks.head(half).array() > 0).count() >= kFewestOfHalf &&
                       (fit.landmarks.tail(frames - half).array() > 0).count() >= kFewestOfHalf;
   if (!enough) return {};
-  const Eigen::VectorXd first = clip.of(frames_between(0, half), 0.3, 0.35).front().alpha;
-  const Eigen::VectorXd second = clip.of(frames_between(half, frames), 0.35, 0.4).front().alpha;
+  const auto alpha = [&](int from, int to, const Context& part) {
+    return clip.of(frames_between(from, to), part).front().alpha;
+  };
+  const Eigen::VectorXd first = alpha(0, half, context.part(0, 0.5));
+  const Eigen::VectorXd second = alpha(half, frames, context.part(0.5, 1));
   return neutral_distance(clip.model(), first, second);
 }
 
@@ -58,14 +61,15 @@ std::map<int, std::vector<int>> frames_of_places(const MappedLandmarks& mapped,
 /// The largest distance of the neutrals of places with frames enough to tell; none where fewer than
 /// two have.
 std::optional<NeutralDistance> places_distance(const ClipFit& clip,
-                                               std::map<int, std::vector<int>> frames) {
+                                               std::map<int, std::vector<int>> frames,
+                                               const Context& context) {
   std::erase_if(frames, [](const auto& place) { return place.second.size() < kFewestOfPlace; });
   if (frames.size() < 2) return {};
   std::vector<Eigen::VectorXd> alphas;
-  const double share = 0.1 / static_cast<double>(frames.size());
+  const double share = 1 / static_cast<double>(frames.size());
   for (const auto& [place, of_place] : frames) {
-    const double from = 0.4 + share * static_cast<double>(alphas.size());
-    alphas.push_back(clip.of(of_place, from, from + share).front().alpha);
+    const double from = share * static_cast<double>(alphas.size());
+    alphas.push_back(clip.of(of_place, context.part(from, from + share)).front().alpha);
   }
   NeutralDistance largest;
   for (std::size_t a = 0; a < alphas.size(); ++a) {
@@ -89,24 +93,22 @@ ClipFit::ClipFit(const MorphableModel& model, const MappedLandmarks& mapped, Eig
       fitter_(model, mapped.vertices,
               outline_ ? LandmarkFitter::Outline::given : LandmarkFitter::Outline::none) {}
 
-std::vector<FrameFit> ClipFit::all(double progress_from, double progress_to) const {
-  return of(frames_between(0, static_cast<int>(mapped_.points.rows())), progress_from, progress_to);
+std::vector<FrameFit> ClipFit::all(const Context& context) const {
+  return of(frames_between(0, static_cast<int>(mapped_.points.rows())), context);
 }
 
-std::vector<FrameFit> ClipFit::of(const std::vector<int>& frames, double progress_from,
-                                  double progress_to) const {
-  FitOptions options = options_;
-  options.progress = part_of(options_.progress, progress_from, progress_to);
-  return fitter_.fit(mapped_.points(frames, Eigen::all), options, times_(frames),
-                     outline_ ? Frames(mapped_.outline(frames, Eigen::all)) : Frames());
+std::vector<FrameFit> ClipFit::of(const std::vector<int>& frames, const Context& context) const {
+  return fitter_.fit(mapped_.points(frames, Eigen::all), options_, times_(frames),
+                     outline_ ? Frames(mapped_.outline(frames, Eigen::all)) : Frames(), context);
 }
 
-ClipPeople people_in(const ClipFit& clip, const FittedCoefficients& fit) {
+ClipPeople people_in(const ClipFit& clip, const FittedCoefficients& fit, const Context& context) {
   ClipPeople people;
   const bool one_shape = clip.shape() == FitOptions::Shape::clip;
   if (!one_shape || clip.model().identities().size() == 0) return people;
-  people.halves = halves_distance(clip, fit);
-  people.places = places_distance(clip, frames_of_places(clip.mapped(), fit, people.cuts));
+  people.halves = halves_distance(clip, fit, context.part(0, 0.5));
+  people.places = places_distance(clip, frames_of_places(clip.mapped(), fit, people.cuts),
+                                  context.part(0.5, 1));
   return people;
 }
 

@@ -6,6 +6,7 @@
 #include "fitting/fit_verdict.h"
 #include "fitting/landmark_fitter.h"
 #include "fitting/landmark_mapping.h"
+#include "toolkit/mesh/context.h"
 
 /// A clip that is fitted as a whole and in parts. Internal to fit_operation.h.
 namespace mimetra {
@@ -17,11 +18,10 @@ class ClipFit {
   ClipFit(const MorphableModel& model, const MappedLandmarks& mapped, Eigen::VectorXd times,
           FitOptions options);
 
-  /// Throws as LandmarkFitter::fit(). Reports the options' progress between two shares of it.
-  std::vector<FrameFit> all(double progress_from, double progress_to) const;
-  /// Of frames in ascending order.
-  std::vector<FrameFit> of(const std::vector<int>& frames, double progress_from,
-                           double progress_to) const;
+  /// Throws as LandmarkFitter::fit().
+  std::vector<FrameFit> all(const Context& context = {}) const;
+  /// Fits `frames`, which ascend.
+  std::vector<FrameFit> of(const std::vector<int>& frames, const Context& context = {}) const;
 
   const MorphableModel& model() const { return model_; }
   const MappedLandmarks& mapped() const { return mapped_; }
@@ -48,6 +48,7 @@ struct ClipPeople {
 };
 
 /// Nothing where each frame has its shape, or the model no identities. `fit` of the whole clip.
-ClipPeople people_in(const ClipFit& clip, const FittedCoefficients& fit);
+ClipPeople people_in(const ClipFit& clip, const FittedCoefficients& fit,
+                     const Context& context = {});
 
 }  // namespace mimetra

@@ -8,7 +8,6 @@
 
 #include "fitting/affine_camera.h"
 #include "toolkit/mesh/option.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/operations/image.h"
 
 namespace mimetra {
@@ -32,8 +31,6 @@ struct FaceOptions {
   std::optional<std::filesystem::path> model = {};
   /// Faces of less confidence are taken for none.
   double min_confidence = 0.1;
-  int threads = 0;  ///< 0 for all there are; what is found does not depend on it
-  Progress progress = {};
 
   static constexpr Option kModel{"model", &FaceOptions::model};
   static constexpr Option kMinConfidence{

@@ -79,12 +79,12 @@ std::vector<std::string> notes_on(const std::vector<FaceFrame>& frames) {
 }
 
 std::vector<FacesInImage> faces_of_images(const ImageSequence& images, const FaceFinder& finder,
-                                          const FaceOptions& options) {
+                                          const Context& context) {
   std::vector<FacesInImage> frames(static_cast<std::size_t>(images.frames()));
   const auto look_at = [&](int i) {
     frames[static_cast<std::size_t>(i)] = {images.name(i), finder.faces(images.image(i))};
   };
-  parallel_for(images.frames(), options.threads, look_at, options.progress);
+  parallel_for(images.frames(), look_at, context);
   return frames;
 }
 
@@ -146,14 +146,16 @@ std::string low_confidence_note(double confidence, double min_confidence) {
   return text.str();
 }
 
-FaceTrack track_face(const ImageSequence& images, const FaceOptions& options) {
+FaceTrack track_face(const ImageSequence& images, const FaceOptions& options,
+                     const Context& context) {
+  check_options(options);
   if (images.frames() == 0) throw std::invalid_argument("there are no images");
   require_dlib(images.name(0));
   const fs::path model = options.model.value_or(kDebianFaceModel);
   const FaceFinder finder(model);
-  const std::vector<FacesInImage> found = images.is_recording()
-                                              ? faces_of_recording(images, finder, options)
-                                              : faces_of_images(images, finder, options);
+  const std::vector<FacesInImage> found =
+      images.is_recording() ? faces_of_recording(images, finder, options.min_confidence, context)
+                            : faces_of_images(images, finder, context);
   FaceTrack track = follow_face(found, options.min_confidence);
   check_some_face(track);
   if (model == kDebianFaceModel) track.notes.insert(track.notes.begin(), kTerms);

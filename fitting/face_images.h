@@ -5,6 +5,7 @@
 
 #include "fitting/face_finder.h"
 #include "fitting/image_files.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/model/landmark_track.h"
 #include "toolkit/operations/image_sequence.h"
@@ -45,6 +46,6 @@ std::string low_confidence_note(double confidence, double min_confidence);
 /// place of the frame before; in the whole frame where one is lost, and in every 30th. Throws as
 /// FaceFinder, ImageSequence::image and follow_face; IoError where no image shows a face;
 /// Cancelled.
-FaceTrack track_face(const ImageSequence& images, const FaceOptions& = {});
+FaceTrack track_face(const ImageSequence& images, const FaceOptions& = {}, const Context& = {});
 
 }  // namespace mimetra

@@ -24,7 +24,6 @@
 #include "fitting/video_format.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/product_blocking.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/formats.h"
@@ -283,18 +282,17 @@ Outcome run(const Invocation& invocation) {
   if (!tell_axes(mapped.ibug) && !model_path.empty()) {
     mapped.ibug = landmarks_beside(model_path, model.vertices());
   }
-  report_progress(invocation.progress, 0);
-  FitOptions options = call.fit;
-  options.progress = invocation.progress;
+  const Context& context = invocation.context;
+  context.report(0);
   const ClipFit clip =
-      naming_landmarks(invocation, [&] { return ClipFit(model, mapped, track.times, options); });
+      naming_landmarks(invocation, [&] { return ClipFit(model, mapped, track.times, call.fit); });
   check_focal_length(call.fit, model, mapped, landmarks.origin.images.get());
   const std::vector<int> partial = without_partial_frames(invocation, model, mapped);
   const std::vector<FrameFit> frames =
-      naming_landmarks(invocation, [&] { return clip.all(0, 0.3); });
+      naming_landmarks(invocation, [&] { return clip.all(context.part(0, 0.3)); });
   FittedCoefficients fit = coefficients_of(model, track.times, frames);
-  const ClipPeople people = people_in(clip, fit);
-  report_progress(invocation.progress, 0.5);
+  const ClipPeople people = people_in(clip, fit, context.part(0.3, 0.5));
+  context.report(0.5);
 
   const FitSummary summary = summary_of(fit);
   std::vector<int> without;
@@ -380,12 +378,10 @@ BoundParameters<LandmarkInputOptions> landmark_parameters() {
       .add(&LandmarkInputOptions::faces, faces);
 }
 
-ReadValue read_landmark_data(const std::string& text, const ReadRequest& request) {
-  SequenceSource source = frame_parameters().read(request.parameters);
-  source.threads = request.threads;
-  source.progress = request.progress;
-  LandmarksRead read =
-      read_landmark_input(text, source, landmark_parameters().read(request.parameters));
+ReadValue read_landmark_data(const std::string& text, const ReadRequest& request,
+                             const Context& context) {
+  LandmarksRead read = read_landmark_input(text, frame_parameters().read(request.parameters),
+                                           landmark_parameters().read(request.parameters), context);
   Origin origin;
   origin.images = std::move(read.images);
   origin.frame_notes = std::move(read.frame_notes);
@@ -395,7 +391,8 @@ ReadValue read_landmark_data(const std::string& text, const ReadRequest& request
 }
 
 std::vector<std::filesystem::path> write_landmark_data(const Data& data,
-                                                       const WriteRequest& request) {
+                                                       const WriteRequest& request,
+                                                       const Context&) {
   return write_text(request, landmark_csv(std::get<LandmarkTrack>(data)));
 }
 

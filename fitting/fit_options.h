@@ -4,7 +4,6 @@
 #include <string_view>
 
 #include "toolkit/mesh/option.h"
-#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 
@@ -52,15 +51,14 @@ struct FitOptions {
   /// Of a perspective camera.
   std::optional<double> focal_length = std::nullopt;
   Outliers outliers = Outliers::automatic;
-  /// Upper bound of each beta, > 0; infinity leaves only beta >= 0.
-  double max_expression = 1;
+  /// Upper bound of each beta, > 0. Without a bound, beta is only at least 0.
+  std::optional<double> max_expression = 1;
   /// Weight of |beta|^2 beside |alpha|^2. By default 0.125 for each expression beyond ten, so that
   /// fifty are as strong as in real performances.
   std::optional<double> ridge = std::nullopt;
   /// Time constant that is the weight of squared second differences of beta over time. The
   /// alternation finds it, from where the solver ends without it. Needs max_expression = 1.
   double smoothness = 0;
-  Progress progress = {};
 
   static constexpr Option kSolver{"solver", &FitOptions::solver};
   static constexpr Option kShape{"shape", &FitOptions::shape};
@@ -78,12 +76,14 @@ struct FitOptions {
   static constexpr Option kFocalLength{
       "focal-length", &FitOptions::focal_length, {.minimum = 1, .maximum = 1e9}, "pixels"};
   static constexpr Option kOutliers{"outliers", &FitOptions::outliers};
+  static constexpr Option kMaxExpression{
+      "max_expression", &FitOptions::max_expression, {.minimum = 1e-300}};
   static constexpr Option kRidge{"ridge", &FitOptions::ridge, {.minimum = 0, .maximum = 1e9}};
   static constexpr Option kSmoothness{
       "smoothness", &FitOptions::smoothness, {.minimum = 0, .maximum = 1e6}, "seconds"};
   static constexpr auto declared() {
     return std::tuple(kSolver, kShape, kIterations, kTolerance, kSigma, kRepeated, kCamera,
-                      kStretch, kFocalLength, kOutliers, kRidge, kSmoothness);
+                      kStretch, kFocalLength, kOutliers, kMaxExpression, kRidge, kSmoothness);
   }
 };
 

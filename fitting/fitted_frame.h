@@ -6,6 +6,7 @@
 
 #include "fitting/fit_options.h"
 #include "fitting/landmark_rows.h"
+#include "toolkit/mesh/context.h"
 
 /// Frames while they are being fitted. Internal to landmark_fitter.h.
 namespace mimetra {
@@ -135,10 +136,11 @@ double energy(const std::vector<FittedFrame>& frames, bool one_identity, double 
 bool has_converged(double before, double after, double tolerance);
 
 /// The paper's alternation, from where the frames are. `options.ridge` is set.
-FittedClip fit_alternating(std::vector<FittedFrame> frames, const FitOptions& options);
+FittedClip fit_alternating(std::vector<FittedFrame> frames, const FitOptions& options,
+                           const Context& context = {});
 
 /// The alternation with options.smoothness; `times` belong to the frames.
 FittedClip fit_smoothly(std::vector<FittedFrame> frames, const FitOptions& options,
-                        const Eigen::VectorXd& times);
+                        const Eigen::VectorXd& times, const Context& context = {});
 
 }  // namespace mimetra

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -6,7 +7,6 @@
 #include <Eigen/QR>
 
 #include "fitting/joint_solver.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/model/box_least_squares.h"
 #include "toolkit/model/second_differences.h"
 #include "toolkit/model/smooth_weights.h"
@@ -64,7 +64,8 @@ class BoxedStep {
   };
 
   BoxedStep(const std::vector<FittedFrame>& frames, const FitOptions& options, double prior)
-      : upper_(options.max_expression), prior_(prior) {
+      : upper_(options.max_expression.value_or(std::numeric_limits<double>::infinity())),
+        prior_(prior) {
     const Eigen::Index size = frames.front().alpha().size();
     N_aa_ = prior * Eigen::MatrixXd::Identity(size, size);
     h_a_ = Eigen::VectorXd::Zero(size);
@@ -187,7 +188,7 @@ struct Descent {
 };
 
 Descent descended(std::vector<FittedFrame> frames, const FitOptions& options, double prior,
-                  int iterations) {
+                  int iterations, const Context& context) {
   constexpr int kHalvings = 10;
   Descent result{{std::move(frames), 0, {}}};
   FittedClip& clip = result.clip;
@@ -208,7 +209,7 @@ Descent descended(std::vector<FittedFrame> frames, const FitOptions& options, do
     ++clip.iterations;
     clip.energies.push_back(now);
     if (has_converged(before, now, options.tolerance) || now == before) break;
-    report_progress(options.progress, double(clip.iterations) / options.iterations);
+    context.report(double(clip.iterations) / iterations);
     before = now;
   }
   return result;
@@ -232,15 +233,15 @@ bool have_settled(const ClipNoise& before, const ClipNoise& now, const Eigen::Ve
 }  // namespace
 
 FittedClip fit_jointly(std::vector<FittedFrame> frames, const FitOptions& options,
-                       const ClipOutline& outline) {
+                       const ClipOutline& outline, const Context& context) {
   constexpr int kRounds = 40;  // 10 to 20 are usual
   const KnownNoise known = known_noise(options, frames.size());
   const double count = double(frames.size());
   if (known.all()) {
     const ClipNoise noise{.repeated = *known.repeated};
+    const double prior = prior_of(known, noise, count);
     FittedClip clip =
-        descended(std::move(frames), options, prior_of(known, noise, count), options.iterations)
-            .clip;
+        descended(std::move(frames), options, prior, options.iterations, context).clip;
     clip.noise = noise;
     return clip;
   }
@@ -253,11 +254,13 @@ FittedClip fit_jointly(std::vector<FittedFrame> frames, const FitOptions& option
     noise.outline = outline_noise(frames, noise);
     set_noise(frames, noise, known);
   };
+  const auto share = [&](int done) { return double(done) / (kRounds + options.iterations); };
   int round = 0;
   for (bool settled = false; !settled && round < kRounds; ++round) {
-    report_progress(options.progress, double(round) / (kRounds + options.iterations));
+    context.report(share(round));
     const Eigen::VectorXd alpha = frames.front().alpha();
-    Descent step = descended(std::move(frames), options, prior_of(known, noise, count), 1);
+    Descent step = descended(std::move(frames), options, prior_of(known, noise, count), 1,
+                             context.part(share(round), share(round + 1)));
     frames = std::move(step.clip.frames);
     ClipNoise now = estimated_noise(frames, step.determined, known);
     now.outline = noise.outline;
@@ -266,15 +269,16 @@ FittedClip fit_jointly(std::vector<FittedFrame> frames, const FitOptions& option
     noise = now;
     match_outline();
   }
-  FittedClip clip =
-      descended(std::move(frames), options, prior_of(known, noise, count), options.iterations).clip;
+  FittedClip clip = descended(std::move(frames), options, prior_of(known, noise, count),
+                              options.iterations, context.part(share(round), 1))
+                        .clip;
   clip.iterations += round;
   clip.noise = noise;
   return clip;
 }
 
 FittedClip smoothed(std::vector<FittedFrame> frames, const FitOptions& options,
-                    const Eigen::VectorXd& times) {
+                    const Eigen::VectorXd& times, const Context& context) {
   const Eigen::Index count = static_cast<Eigen::Index>(frames.size());
   const Eigen::Index size = frames.front().beta().size();
   FittedClip clip{std::move(frames), 0, {}};
@@ -309,7 +313,7 @@ FittedClip smoothed(std::vector<FittedFrame> frames, const FitOptions& options,
     clip.frames = std::move(trial);
     clip.energies.push_back(now);
     ++clip.iterations;
-    report_progress(options.progress, double(clip.iterations) / options.iterations);
+    context.report(double(clip.iterations) / options.iterations);
   }
   return clip;
 }

@@ -12,7 +12,6 @@
 #include "fitting/joint_solver.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/product_blocking.h"
-#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 
@@ -48,7 +47,6 @@ void check(const FitOptions& options) {
   if ((options.camera == Camera::perspective) != options.focal_length.has_value()) {
     fail("a perspective camera needs a focal length, and others have none");
   }
-  if (!(options.max_expression > 0)) fail("max_expression must be positive");
   if (options.smoothness > 0 && options.max_expression != 1) {
     fail("smoothness needs expressions of at most 1");
   }
@@ -101,42 +99,44 @@ std::vector<FrameFit> results_of(const FittedClip& clip) {
 }
 
 FittedClip solved(std::vector<FittedFrame> frames, const FitOptions& options,
-                  const ClipOutline& outline = {}) {
+                  const ClipOutline& outline, const Context& context) {
   return options.solver == FitOptions::Solver::joint
-             ? fit_jointly(std::move(frames), options, outline)
-             : fit_alternating(std::move(frames), options);
+             ? fit_jointly(std::move(frames), options, outline, context)
+             : fit_alternating(std::move(frames), options, context);
 }
 
 /// One clip of all frames, or one of each frame, which starts from the one before.
 std::vector<FittedClip> solved_by_shape(std::vector<FittedFrame> frames, const FitOptions& options,
-                                        const ClipOutline& outline) {
+                                        const ClipOutline& outline, const Context& context) {
   std::vector<FittedClip> clips;
   if (options.shape == FitOptions::Shape::clip) {
-    clips.push_back(solved(std::move(frames), options, outline));
+    clips.push_back(solved(std::move(frames), options, outline, context));
     return clips;
   }
-  FitOptions of_frame = options;
-  of_frame.progress = {};
   for (FittedFrame& frame : frames) {
-    report_progress(options.progress, double(clips.size()) / double(frames.size()));
+    const double done = double(clips.size()) / double(frames.size());
+    context.report(done);
     if (!clips.empty()) {
       const FittedFrame& before = clips.back().frames.front();
       frame.set_alpha(before.alpha());
       frame.set_beta(before.beta());
       frame.estimate_camera();
     }
-    clips.push_back(solved({std::move(frame)}, of_frame));
+    clips.push_back(solved({std::move(frame)}, options, {}, context.part(done, done)));
   }
   return clips;
 }
 
 /// Fits of frames that are seen, at their `times`.
 std::vector<FrameFit> fits_of(std::vector<FittedFrame> frames, const FitOptions& options,
-                              const Eigen::VectorXd& times, const ClipOutline& outline) {
+                              const Eigen::VectorXd& times, const ClipOutline& outline,
+                              const Context& context) {
+  const double solved_at = options.smoothness > 0 ? 0.5 : 1;
   std::vector<FrameFit> fits;
   std::vector<FittedFrame> rough;
   ClipNoise noise;
-  for (FittedClip& clip : solved_by_shape(std::move(frames), options, outline)) {
+  for (FittedClip& clip :
+       solved_by_shape(std::move(frames), options, outline, context.part(0, solved_at))) {
     if (options.smoothness > 0) {
       noise = clip.noise;
       std::ranges::move(clip.frames, std::back_inserter(rough));
@@ -147,8 +147,9 @@ std::vector<FrameFit> fits_of(std::vector<FittedFrame> frames, const FitOptions&
   if (options.smoothness == 0) return fits;
   const bool jointly =
       options.solver == FitOptions::Solver::joint && options.shape == FitOptions::Shape::clip;
-  FittedClip smooth = jointly ? smoothed(std::move(rough), options, times)
-                              : fit_smoothly(std::move(rough), options, times);
+  const Context rest = context.part(solved_at, 1);
+  FittedClip smooth = jointly ? smoothed(std::move(rough), options, times, rest)
+                              : fit_smoothly(std::move(rough), options, times, rest);
   smooth.noise = noise;
   return results_of(smooth);
 }
@@ -280,8 +281,8 @@ LandmarkFitter::LandmarkFitter(LandmarkFitter&&) noexcept = default;
 LandmarkFitter& LandmarkFitter::operator=(LandmarkFitter&&) noexcept = default;
 
 std::vector<FrameFit> LandmarkFitter::fit(const Frames& points, const FitOptions& given,
-                                          const Eigen::VectorXd& given_times,
-                                          const Frames& outline) const {
+                                          const Eigen::VectorXd& given_times, const Frames& outline,
+                                          const Context& context) const {
   const FitOptions options = state_->checked(points, given, given_times);
   fix_product_blocking();
   const Eigen::Index count = points.rows();
@@ -306,7 +307,7 @@ std::vector<FrameFit> LandmarkFitter::fit(const Frames& points, const FitOptions
   }
   const ClipOutline on_outline = state_->on_outline(outline, points.rows(), indices);
   const std::vector<FrameFit> fits =
-      fits_of(std::move(frames), options, times(indices), on_outline);
+      fits_of(std::move(frames), options, times(indices), on_outline, context);
   return with_unseen(fits, indices, times);
 }
 

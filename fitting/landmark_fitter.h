@@ -5,6 +5,7 @@
 
 #include "fitting/affine_camera.h"
 #include "fitting/fit_options.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/model/morphable_model.h"
 
@@ -65,7 +66,8 @@ class LandmarkFitter {
   /// std::invalid_argument where sizes disagree or an option is out of range; MismatchError where
   /// no frame has landmarks, or those of a frame are fewer than four or coplanar; Cancelled.
   std::vector<FrameFit> fit(const Frames& points, const FitOptions& = {},
-                            const Eigen::VectorXd& times = {}, const Frames& outline = {}) const;
+                            const Eigen::VectorXd& times = {}, const Frames& outline = {},
+                            const Context& = {}) const;
 
  private:
   struct State;

@@ -15,7 +15,6 @@
 #include "toolkit/io/frame_series.h"
 #include "toolkit/io/missing_path.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/parameter.h"
 
@@ -119,9 +118,9 @@ struct ShownImages {
   Paths files;
 };
 
-ShownImages images_named(const std::string& text, int count, const Progress& progress) {
+ShownImages images_named(const std::string& text, int count, const Context& context) {
   if (is_video(text) && fs::exists(text)) {
-    auto video = std::make_shared<const VideoFile>(text, progress);
+    auto video = std::make_shared<const VideoFile>(text, context);
     check_whole(text, *video, count);
     return {std::move(video), {text}};
   }
@@ -130,9 +129,9 @@ ShownImages images_named(const std::string& text, int count, const Progress& pro
 }
 
 ShownImages images_of(const std::string& text, const Paths& frames, int count,
-                      const LandmarkInputOptions& options, const Progress& progress) {
+                      const LandmarkInputOptions& options, const Context& context) {
   if (options.images) {
-    ShownImages shown = images_named(*options.images, count, progress);
+    ShownImages shown = images_named(*options.images, count, context);
     if (shown.images->frames() == count) return shown;
     throw MismatchError(*options.images + ": " + std::to_string(shown.images->frames()) +
                         " images, expected one for each of the " + std::to_string(count) +
@@ -177,7 +176,7 @@ void set_times(LandmarksRead& read, const std::string& text, const std::vector<i
 }
 
 /// One frame from each file.
-LandmarkTrack read_points(const Paths& files, const Progress& progress) {
+LandmarkTrack read_points(const Paths& files, const Context& context) {
   LandmarkTrack all;
   for (std::size_t i = 0; i < files.size(); ++i) {
     LandmarkTrack one = read_landmarks(files[i]);
@@ -190,7 +189,7 @@ LandmarkTrack read_points(const Paths& files, const Progress& progress) {
                           files[0].string());
     }
     all.points.row(static_cast<Eigen::Index>(i)) = one.points.row(0);
-    report_progress(progress, static_cast<double>(i + 1) / static_cast<double>(files.size()));
+    context.report(static_cast<double>(i + 1) / static_cast<double>(files.size()));
   }
   return all;
 }
@@ -262,11 +261,9 @@ void make_pixels(LandmarksRead& read, const std::string& text,
   }
 }
 
-LandmarksRead find_in_images(std::shared_ptr<const ImageSequence> images, int threads,
-                             const Progress& progress, FaceOptions options) {
-  options.threads = threads;
-  options.progress = progress;
-  FaceTrack faces = track_face(*images, options);
+LandmarksRead find_in_images(std::shared_ptr<const ImageSequence> images,
+                             const FaceOptions& options, const Context& context) {
+  FaceTrack faces = track_face(*images, options, context);
   LandmarksRead read;
   read.track = std::move(faces.landmarks);
   read.images = std::move(images);
@@ -276,15 +273,14 @@ LandmarksRead find_in_images(std::shared_ptr<const ImageSequence> images, int th
 }
 
 LandmarksRead find_in_video(const std::string& text, const SequenceSource& source,
-                            const FaceOptions& options) {
+                            const FaceOptions& options, const Context& context) {
   constexpr double kShareOfOpening = 0.2;
-  const auto video =
-      std::make_shared<const VideoFile>(text, part_of(source.progress, 0, kShareOfOpening));
+  const auto video = std::make_shared<const VideoFile>(text, context.part(0, kShareOfOpening));
   check_rate(text, video->times(), source);
   check_whole(text, *video, end_of_frames(source.frames));
   const std::vector<int> chosen = selected_frames(source.frames, video->frames());
-  LandmarksRead read = find_in_images(selected(video, chosen), source.threads,
-                                      part_of(source.progress, kShareOfOpening, 1), options);
+  LandmarksRead read =
+      find_in_images(selected(video, chosen), options, context.part(kShareOfOpening, 1));
   read.track.times = video->times()(chosen);
   read.files = {text};
   return read;
@@ -293,13 +289,13 @@ LandmarksRead find_in_video(const std::string& text, const SequenceSource& sourc
 }  // namespace
 
 LandmarksRead read_landmark_input(const std::string& text, const SequenceSource& source,
-                                  const LandmarkInputOptions& options) {
+                                  const LandmarkInputOptions& options, const Context& context) {
   check_options(source);
   check_options(options.faces);
   const LandmarkFiles input = input_of(text);
   if (is_video(input.track)) {
     check_needed(text, "is a video", options);
-    return find_in_video(text, source, options.faces);
+    return find_in_video(text, source, options.faces, context);
   }
   LandmarkTrack whole;
   if (input.frames.empty()) whole = read_landmarks(input.track);
@@ -310,14 +306,15 @@ LandmarksRead read_landmark_input(const std::string& text, const SequenceSource&
   const bool from_images = !files.empty() && is_image(files.front());
   check_needed(text, from_images ? "are images themselves" : "", options);
   if (from_images) {
-    read = find_in_images(std::make_shared<const ImageFiles>(files), source.threads,
-                          source.progress, options.faces);
+    read = find_in_images(std::make_shared<const ImageFiles>(files), options.faces, context);
     read.files = files;
   } else {
+    constexpr double kShareOfPoints = 0.5;
     read.track = files.empty() ? taken_from(std::move(whole), selected)
-                               : read_points(files, source.progress);
+                               : read_points(files, context.part(0, kShareOfPoints));
     read.files = files.empty() ? Paths{input.track} : files;
-    const ShownImages shown = images_of(text, input.frames, count, options, source.progress);
+    const ShownImages shown =
+        images_of(text, input.frames, count, options, context.part(kShareOfPoints, 1));
     if (shown.images) read.images = mimetra::selected(shown.images, selected);
     const bool of_frames = static_cast<int>(shown.files.size()) == count;
     const Paths shown_files = of_frames ? taken_from(shown.files, selected) : shown.files;
@@ -335,7 +332,7 @@ LandmarksRead read_landmark_input(const std::string& text, const SequenceSource&
     read.notes.push_back(note);
   }
   set_times(read, text, selected, source);
-  report_progress(source.progress, 1);
+  context.report(1);
   return read;
 }
 

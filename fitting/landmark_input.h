@@ -8,6 +8,7 @@
 
 #include "fitting/face_images.h"
 #include "toolkit/io/sequence_options.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/model/landmark_track.h"
 
 namespace mimetra {
@@ -46,6 +47,6 @@ struct LandmarksRead {
 /// option that changes nothing, and as selected_frames; std::invalid_argument for options out of
 /// range; Cancelled.
 LandmarksRead read_landmark_input(const std::string& text, const SequenceSource& source = {},
-                                  const LandmarkInputOptions& = {});
+                                  const LandmarkInputOptions& = {}, const Context& = {});
 
 }  // namespace mimetra

@@ -93,13 +93,13 @@ class ChunkSearch {
 };
 
 /// All frames on the calling thread.
-void search_here(const ImageSequence& images, const FaceFinder& finder, const FaceOptions& options,
-                 std::vector<FacesInImage>& found) {
+void search_here(const ImageSequence& images, const FaceFinder& finder, double min_confidence,
+                 std::vector<FacesInImage>& found, const Context& context) {
   std::optional<ChunkSearch> search;
   for (int frame = 0; frame < images.frames(); ++frame) {
-    if (frame % kChunkFrames == 0) search.emplace(finder, options.min_confidence);
+    if (frame % kChunkFrames == 0) search.emplace(finder, min_confidence);
     found[static_cast<std::size_t>(frame)].faces = search->faces(images.image(frame));
-    report_progress(options.progress, double(frame + 1) / images.frames());
+    context.report(double(frame + 1) / images.frames());
   }
 }
 
@@ -156,22 +156,22 @@ class Searchers {
 }  // namespace
 
 std::vector<FacesInImage> faces_of_recording(const ImageSequence& images, const FaceFinder& finder,
-                                             const FaceOptions& options) {
+                                             double min_confidence, const Context& context) {
   const int count = images.frames(), chunks = (count + kChunkFrames - 1) / kChunkFrames;
   std::vector<FacesInImage> found(static_cast<std::size_t>(count));
   for (int frame = 0; frame < count; ++frame) {
     found[static_cast<std::size_t>(frame)].image = images.name(frame);
   }
   const int all = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const int threads = std::min(options.threads > 0 ? options.threads : all, chunks);
+  const int threads = std::min(context.threads() > 0 ? context.threads() : all, chunks);
   if (threads == 1) {
-    search_here(images, finder, options, found);
+    search_here(images, finder, min_confidence, found, context);
     return found;
   }
-  Searchers searchers(count, threads, finder, options.min_confidence, found);
+  Searchers searchers(count, threads, finder, min_confidence, found);
   for (int frame = 0; frame < count; ++frame) {
     searchers.waiting.put(frame, images.image(frame));
-    report_progress(options.progress, double(frame + 1) / count);
+    context.report(double(frame + 1) / count);
   }
   searchers.finish();
   return found;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "fitting/face_finder.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/operations/image_sequence.h"
 
 /// Internal to track_face().
@@ -16,6 +17,6 @@ inline constexpr int kChunkFrames = 30;
 /// near those of the frame before, and everywhere in each chunk's first frame, and where fewer are
 /// found than in the frame before. Throws as ImageSequence::image; Cancelled.
 std::vector<FacesInImage> faces_of_recording(const ImageSequence& images, const FaceFinder& finder,
-                                             const FaceOptions& options);
+                                             double min_confidence, const Context& context = {});
 
 }  // namespace mimetra

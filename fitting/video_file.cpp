@@ -30,13 +30,13 @@ bool is_video(const fs::path& path) {
 struct VideoFile::State {
   explicit State(fs::path file) : path(std::move(file)) {}
 
-  void index(const Progress& progress) {
+  void index(const Context& context) {
     const std::unique_ptr<VideoDecoder> whole = open_video(path);
     std::vector<double> found;
     try {
       while (const std::optional<double> time = whole->next()) {
         found.push_back(*time);
-        report_progress(progress, 0);
+        context.report(0);
       }
     } catch (const IoError& error) {
       if (found.empty()) throw;
@@ -73,9 +73,9 @@ struct VideoFile::State {
   std::deque<Image> recent;  ///< of the frames before it
 };
 
-VideoFile::VideoFile(fs::path path, const Progress& progress)
+VideoFile::VideoFile(fs::path path, const Context& context)
     : state_(std::make_unique<State>(std::move(path))) {
-  state_->index(progress);
+  state_->index(context);
 }
 VideoFile::~VideoFile() = default;
 

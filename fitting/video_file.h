@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/operations/image_sequence.h"
 
 namespace mimetra {
@@ -26,7 +26,7 @@ class VideoFile final : public ImageSequence {
   /// Decodes all frames once, to know their times. Throws IoError for what is no video, where not
   /// even its first frame can be decoded, and where FFmpeg's libraries are missing;
   /// Cancelled.
-  explicit VideoFile(std::filesystem::path path, const Progress& progress = {});
+  explicit VideoFile(std::filesystem::path path, const Context& context = {});
   ~VideoFile() override;
 
   /// Those before the first one that is damaged.

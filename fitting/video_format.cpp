@@ -40,17 +40,18 @@ VideoLayout layout_of(const Pictures& pictures, const Eigen::VectorXd& times, co
 
 /// Draws some pictures at a time on all threads, and codes them in order.
 void write_frames(const Pictures& pictures, const WriteRequest& request,
-                  const std::filesystem::path& file) {
+                  const std::filesystem::path& file, const Context& context) {
   const Eigen::VectorXd times =
       pictures.times.size() == pictures.count ? pictures.times : default_times(pictures.count);
   const int all = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const int batch = request.threads > 0 ? request.threads : all;
+  const int batch = context.threads() > 0 ? context.threads() : all;
   std::unique_ptr<VideoEncoder> encoder;
   Image size;
   for (int first = 0; first < pictures.count; first += batch) {
+    const double done = double(first) / pictures.count;
     std::vector<Image> drawn(static_cast<std::size_t>(std::min(batch, pictures.count - first)));
-    parallel_for(static_cast<int>(drawn.size()), request.threads,
-                 [&](int i) { drawn[static_cast<std::size_t>(i)] = pictures.draw(first + i); });
+    const auto draw = [&](int i) { drawn[static_cast<std::size_t>(i)] = pictures.draw(first + i); };
+    parallel_for(static_cast<int>(drawn.size()), draw, context.part(done, done));
     for (int i = 0; i < static_cast<int>(drawn.size()); ++i) {
       const Image& image = drawn[static_cast<std::size_t>(i)];
       if (!encoder) {
@@ -66,17 +67,17 @@ void write_frames(const Pictures& pictures, const WriteRequest& request,
       }
       encoder->add(image, times[first + i]);
     }
-    report_progress(request.progress,
-                    double(first + static_cast<int>(drawn.size())) / pictures.count);
+    context.report(double(first + static_cast<int>(drawn.size())) / pictures.count);
   }
   if (encoder) encoder->finish();
 }
 
-std::vector<std::filesystem::path> write_video(const Data& data, const WriteRequest& request) {
+std::vector<std::filesystem::path> write_video(const Data& data, const WriteRequest& request,
+                                               const Context& context) {
   return write_with_extra(request, [&]() -> std::vector<std::filesystem::path> {
     PendingOutputs outputs(request.overwrite, request.inputs, request.together);
     write_frames(std::get<Pictures>(data), request,
-                 outputs.add(request.target, PendingOutput::Kind::file));
+                 outputs.add(request.target, PendingOutput::Kind::file), context);
     outputs.commit();
     return {request.target};
   });

@@ -22,18 +22,18 @@ int main() {
   call.parameters = Parameters(table.parameters_of(decompose));
   call.parameters.set("k", 10);
   int reports = 0;
-  call.progress = [&reports](double share) {
+  call.context = Context().with_progress([&reports](double share) {
     std::cerr << '\r' << int(100 * share) << " %";
     ++reports;
     return true;
-  };
+  });
   const Outcome outcome = decompose.run(call);
   std::cerr << '\n';
   const auto& components = std::get<Components>(outcome.outputs.at("out").front().data);
   std::cout << outcome.summary;
 
   // A progress function that returns false ends the work.
-  call.progress = [](double share) { return share < 0.5; };
+  call.context = Context().with_progress([](double share) { return share < 0.5; });
   bool cancelled = false;
   try {
     decompose.run(call);

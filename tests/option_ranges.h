@@ -13,17 +13,22 @@ template <typename Value>
 void set_option(Value& value, double number) {
   if constexpr (std::is_same_v<Value, Length>) {
     value.value = number;
-  } else if constexpr (std::is_same_v<Value, std::optional<Length>>) {
-    value = Length{number};
-  } else if constexpr (std::is_same_v<Value, std::vector<int>>) {
-    value = {static_cast<int>(number)};
   } else if constexpr (std::is_same_v<Value, bool> || NamedChoice<Value>) {
     FAIL() << "has no range";
-  } else if constexpr (std::is_same_v<Value, std::optional<int>>) {
-    value = static_cast<int>(number);
   } else {
     value = static_cast<Value>(number);
   }
+}
+
+template <typename Value>
+void set_option(std::optional<Value>& value, double number) {
+  set_option(value.emplace(), number);
+}
+
+template <typename Value>
+void set_option(std::vector<Value>& values, double number) {
+  values.resize(1);
+  set_option(values.front(), number);
 }
 
 /// The next value out of the range at an end of it.

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "toolkit/mesh/ranks.h"
+#include "toolkit/mesh/context.h"
 
 /// Ranks that are threads of one process: each works on what it was given alone, and knows of the
 /// others only what comes through Ranks.

@@ -13,8 +13,9 @@ The public headers; each folder is a library of its own. An include names the pa
 is computed, shapes, units, errors and the source. All classes and functions are also in
 <a class="reference" href="cpp/index.html">one reference</a> with a search of its own.
 
-[As a library](readme.md#as-a-library) shows the first lines of a program, [Samples](samples.md)
-whole ones.
+`#include <mimetra/all.h>` includes the headers of values, algorithms and files.
+
+[As a library](readme.md#as-a-library) shows a first program, [Samples](samples.md) more.
 """
 
 CPP_MAIN = """# C++ and C reference

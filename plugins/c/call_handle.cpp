@@ -90,8 +90,7 @@ CallRequest mimetra_call::request() const {
   request.wanted = wanted_;
   request.destinations = destinations_;
   request.manifest = manifest_;
-  request.threads = context_.threads;
-  request.progress = context_.progress;
+  request.context = context_.context;
   request.log = context_.log;
   return request;
 }

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "plugins/c/call_handle.h"
-#include "plugins/c/context.h"
+#include "plugins/c/context_handle.h"
 #include "plugins/c/job.h"
 #include "plugins/c/make_data.h"
 #include "plugins/c/stored_data.h"
@@ -56,10 +56,9 @@ const char* message(const mimetra_context* context) noexcept {
 mimetra_status set_progress(mimetra_context* context, mimetra_progress progress,
                             void* user) noexcept {
   return guarded(context, [&] {
-    context->progress = {};
-    if (progress) {
-      context->progress = [progress, user](double share) { return progress(share, user) != 0; };
-    }
+    Progress called;
+    if (progress) called = [progress, user](double share) { return progress(share, user) != 0; };
+    context->context = context->context.with_progress(std::move(called));
   });
 }
 
@@ -68,7 +67,7 @@ mimetra_status set_threads(mimetra_context* context, int32_t threads) noexcept {
     if (threads < 0) {
       throw UsageError("threads: expected 0 or more, found " + std::to_string(threads));
     }
-    context->threads = std::min(threads, kMostThreads);
+    context->context = context->context.with_threads(std::min(threads, kMostThreads));
   });
 }
 

@@ -39,9 +39,12 @@ mimetra_job::mimetra_job(const Operation& operation, const Invocation& invocatio
                          std::shared_ptr<const DescribedTable> table)
     : operation_(operation), invocation_(invocation), context_{std::move(table)} {
   context_.log = invocation.log;
-  context_.threads = invocation.threads;
-  // The toolkit's operations that it calls can be cancelled; how far they are is theirs.
-  context_.progress = [this](double) { return goes_on(); };
+  // The user can cancel the toolkit's operations that the plugin calls. Their progress is not
+  // shown.
+  context_.context =
+      Context().with_threads(invocation.context.threads()).with_progress([this](double) {
+        return goes_on();
+      });
   for (const auto& [name, values] : invocation.inputs) {
     for (const NamedData& value : values) {
       inputs_[name].push_back(
@@ -92,7 +95,11 @@ const char* mimetra_job::text(const std::string& name) {
 }
 
 bool mimetra_job::goes_on() {
-  if (invocation_.progress && !invocation_.progress(share_)) cancelled_ = true;
+  try {
+    invocation_.context.report(share_);
+  } catch (const Cancelled&) {
+    cancelled_ = true;
+  }
   return !cancelled_;
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "plugins/c/context.h"
+#include "plugins/c/context_handle.h"
 #include "plugins/c/value.h"
 
 /// One run of a third-party operation, from inside.
@@ -23,7 +23,7 @@ struct mimetra_job {
   double number(const std::string& parameter);
   /// Null where it has no value.
   const char* text(const std::string& parameter);
-  int threads() const { return invocation_.threads; }
+  int threads() const { return invocation_.context.threads(); }
   bool wants(const std::string& output) const { return invocation_.wants(output); }
   /// Throws Cancelled. A share outside [0, 1] counts as the nearest in it.
   void progress(double share);

@@ -34,7 +34,7 @@ std::string extension_of(const char* extension, const std::string& what) {
 
 /// One run of a function: the file and the options that it has.
 Invocation invocation_of(const std::string& path, const std::vector<Parameter>& options,
-                         const Parameters& given, const Progress& progress, int threads) {
+                         const Parameters& given, const Context& context) {
   std::vector<Parameter> declared = options;
   declared.push_back({kPath, ParameterKind::text, {}, ""});
   Invocation invocation;
@@ -43,18 +43,16 @@ Invocation invocation_of(const std::string& path, const std::vector<Parameter>& 
     invocation.parameters.set(option.name, given.value(option.name));
   }
   invocation.parameters.set(kPath, path);
-  invocation.progress = progress;
-  invocation.threads = threads;
+  invocation.context = context;
   return invocation;
 }
 
-/// With all frames, as functions of plugins see them.
-Data in_memory(const Data& data, const WriteRequest& request) {
+/// The value with all frames, as functions of plugins see it.
+Data in_memory(const Data& data, const Context& context) {
   const auto* streamed = std::get_if<FieldSequence>(&data);
   if (!streamed || streamed->is_in_memory()) return data;
-  return FieldSequence(
-      MeshSequence(*streamed->frames, {.threads = request.threads, .progress = {}}),
-      streamed->fields, streamed->displacement);
+  return FieldSequence(MeshSequence(*streamed->frames, context.part(0, 0)), streamed->fields,
+                       streamed->displacement);
 }
 
 /// What the one who reads it asked for.
@@ -73,12 +71,11 @@ void fit_to(const ReadRequest& request, const std::string& text, Data& data) {
 }
 
 ReadValue read_by(PluginFunction function, const Operation& operation, const std::string& text,
-                  const ReadRequest& request) {
+                  const ReadRequest& request, const Context& context) {
   if (!fs::exists(text)) fail_missing(text);
   function.subject = text + " (" + function.subject + ")";
   ReadValue read;
-  Invocation invocation = invocation_of(text, operation.parameters, request.parameters,
-                                        request.progress, request.threads);
+  Invocation invocation = invocation_of(text, operation.parameters, request.parameters, context);
   invocation.log = [&read](LogLevel level, const std::string& note) {
     if (level == LogLevel::warning) read.notes.push_back(note);
   };
@@ -91,15 +88,15 @@ ReadValue read_by(PluginFunction function, const Operation& operation, const std
 }
 
 std::vector<fs::path> write_by(PluginFunction function, const Operation& operation,
-                               const Data& data, const WriteRequest& request) {
+                               const Data& data, const WriteRequest& request,
+                               const Context& context) {
   check_inputs_stay(request.target, request.inputs);
   function.subject = request.target.string() + " (" + function.subject + ")";
   return write_with_extra(request, [&]() -> std::vector<fs::path> {
     PendingOutputs outputs(request.overwrite, request.inputs, request.together);
     const fs::path file = outputs.add(request.target, PendingOutput::Kind::file);
-    Invocation invocation = invocation_of(file, operation.parameters, request.parameters,
-                                          request.progress, request.threads);
-    invocation.inputs[kValue] = {{request.target.stem().string(), in_memory(data, request)}};
+    Invocation invocation = invocation_of(file, operation.parameters, request.parameters, context);
+    invocation.inputs[kValue] = {{request.target.stem().string(), in_memory(data, context)}};
     function(operation, invocation);
     std::error_code unreadable;
     const auto bytes = fs::file_size(file, unreadable);
@@ -144,8 +141,9 @@ Format plugin_format(const mimetra_format& described, const std::string& plugin,
     operation.parameters = format.reading;
     operation.outputs = {{kValue, format.kind, ""}};
     const PluginFunction read{described.read, described.user, plugin, toolkit};
-    format.read = [read, operation](const std::string& text, const ReadRequest& request) {
-      return read_by(read, operation, text, request);
+    format.read = [read, operation](const std::string& text, const ReadRequest& request,
+                                    const Context& context) {
+      return read_by(read, operation, text, request, context);
     };
   }
   if (described.write) {
@@ -153,8 +151,9 @@ Format plugin_format(const mimetra_format& described, const std::string& plugin,
     operation.outputs.clear();
     operation.inputs = {{kValue, format.kind, ""}};
     const PluginFunction write{described.write, described.user, plugin, toolkit};
-    format.write = [write, operation](const Data& data, const WriteRequest& request) {
-      return write_by(write, operation, data, request);
+    format.write = [write, operation](const Data& data, const WriteRequest& request,
+                                      const Context& context) {
+      return write_by(write, operation, data, request, context);
     };
   }
   return format;

@@ -40,8 +40,8 @@ NamedData loaded_data(const mimetra_context& context, DataKind kind, const std::
   reading.inputs = {{"input", kind, ""}};
   reading.inputs.front().fields = reading.inputs.front().identities = true;
   const Parameters parameters = parameters_of(table.reader(kind, text).reading, settings);
-  LoadedInputs loaded = load_inputs(table, reading, parameters, {{"input", {text}}},
-                                    context.progress, context.log, context.threads);
+  LoadedInputs loaded = load_inputs(table, reading, parameters, {{"input", {text}}}, context.log,
+                                    {}, false, context.context);
   return std::move(loaded.data.at("input").front());
 }
 
@@ -54,12 +54,11 @@ void write_data(const mimetra_context& context, const Data& data, const std::str
   std::vector<Parameter> declared = format.writing;
   declared.push_back(kForce);
   const Parameters parameters = parameters_of(std::move(declared), settings);
-  WriteRequest request{path, parameters, parameters.flag("force"), context.progress};
-  request.threads = context.threads;
+  const WriteRequest request{path, parameters, parameters.flag("force")};
   for (const std::string& note : notes_on_losses(format, data, request)) {
     if (context.log) context.log(LogLevel::warning, note);
   }
-  format.write(data, request);
+  format.write(data, request, context.context);
 }
 
 }  // namespace mimetra

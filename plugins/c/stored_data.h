@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "plugins/c/context.h"
+#include "plugins/c/context_handle.h"
 #include "toolkit/operations/data.h"
 
 namespace mimetra {

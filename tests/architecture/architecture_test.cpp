@@ -88,6 +88,15 @@ TEST(Architecture, IncludesNoPrivateHeaderOfAnotherFolder) {
   EXPECT_THAT(test::private_header_errors(sources(), files_of(kFolders, is_list)), IsEmpty());
 }
 
+TEST(Architecture, HasOneHeaderForAllAlgorithmsWithAPage) {
+  const std::set<std::string> others = {"index", "landmark_fitter"};
+  const std::string all = content(test::source_folder() / "all.h");
+  for (const auto& page : fs::directory_iterator(test::source_folder() / "docs/algorithms")) {
+    const std::string name = page.path().stem();
+    if (!others.contains(name)) EXPECT_THAT(all, HasSubstr("/" + name + ".h\""));
+  }
+}
+
 TEST(Architecture, HasNoTwoHeadersOfOneName) {
   EXPECT_THAT(test::name_errors(sources_and_tests()), IsEmpty());
 }

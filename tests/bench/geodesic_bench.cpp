@@ -29,11 +29,12 @@ std::vector<Eigen::MatrixXd> own_distances(const HeatGeodesics& geodesics,
   constexpr int kGroupSize = HeatGeodesics::kGroup;
   const auto count = static_cast<int>(sources.size());
   std::vector<Eigen::MatrixXd> result((count + kGroupSize - 1) / kGroupSize);
-  parallel_for(static_cast<int>(result.size()), 0, [&](int i) {
+  const auto compute = [&](int i) {
     const int first = i * kGroupSize;
     result[i] = geodesics.distances_from_each(
         std::span(sources).subspan(first, std::min(kGroupSize, count - first)));
-  });
+  };
+  parallel_for(static_cast<int>(result.size()), compute);
   return result;
 }
 

@@ -95,7 +95,7 @@ std::vector<IterationCurve> iteration_curves(const Subject& subject, bool quick)
     IterationCurve curve{subject.name, count, {}};
     double first_energy = 0;
     for (const int allowed : iterations) {
-      AnalysisOptions options{.decomposition = {.count = count, .iterations = allowed}};
+      const AnalysisOptions options{.count = count, .iterations = allowed};
       const std::clock_t start = std::clock();
       const Analysis analysis = analyse(source, options);
       const Regions regions = RegionCompleter(analysis, {})(choose_regions(analysis), target, {});

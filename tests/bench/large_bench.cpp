@@ -41,7 +41,7 @@ void measure_parts(const FrameSource& sequence, LargeRow& row) {
     row.queries += now() - before;
     return found;
   };
-  options.progress = [&](double share) {
+  const auto note_start = [&](double share) {
     if (first_iteration == 0 && share >= kShareOfStart) {
       first_iteration = now();
       queries_of_start = row.queries;
@@ -49,7 +49,7 @@ void measure_parts(const FrameSource& sequence, LargeRow& row) {
     return true;
   };
   const double begin = now();
-  decompose(sequence, options);
+  decompose(sequence, options, Context().with_progress(note_start));
   const double end = now();
   row.start = first_iteration - begin - queries_of_start;
   row.iterations = end - first_iteration - (row.queries - queries_of_start);

@@ -59,13 +59,12 @@ NumpyComparison compared_with_numpy(const std::string& name, const MeshSequence&
   options.sign_rule = SignRule::literal;
   std::set<VertexIndex> sources;
   DecompositionOptions recording = options;
-  recording.threads = 1;
   recording.distances = [&sources,
                          distances = options.distances](std::span<const VertexIndex> asked) {
     sources.insert(asked.begin(), asked.end());
     return distances(asked);
   };
-  const Components components = decompose(sequence, recording);
+  const Components components = decompose(sequence, recording, Context().with_threads(1));
   write_distances(sources, options.distances, sequence.vertices(), scratch);
   write_npy_frames(scratch / "frames.npy", sequence.positions());
   const Positions& rest = sequence.rest();

@@ -41,8 +41,7 @@ class PerRegionComparison {
         target_{subject.name, subject.target},
         source_(prepare_source(subject.performance)),
         placed_(placed_at(target_, source_)),
-        selection_(
-            selection_of(choose_regions(analyse(source_, {.decomposition = {.count = count}})))) {}
+        selection_(selection_of(choose_regions(analyse(source_, {.count = count})))) {}
 
   int regions() const { return static_cast<int>(selection_.regions.size()); }
 
@@ -107,7 +106,8 @@ class PerRegionComparison {
     const Eigen::MatrixXd global =
         BlendshapeTransfer(performance.rest(), *model, triangles).weights(performance);
     if (!shares) return std::make_shared<const Animation>(model, global);
-    const LocalWeights local(performance.rest(), *model, *shares, triangles, options.local);
+    const LocalWeights local(performance.rest(), *model, *shares, triangles,
+                             {.ridge = options.region_ridge});
     return std::make_shared<const RegionalAnimation>(model, *shares,
                                                      local.weights(performance, global).beta);
   }
@@ -145,7 +145,7 @@ std::vector<PerRegionRow> per_region_rows(const Subject& given, bool quick) {
         SolveOptions options;
         options.per_region = true;
         options.falloff = Length::share(falloff);
-        options.local.ridge = ridge;
+        options.region_ridge = ridge;
         const Measured regions = comparison.of_all(options);
         PerRegionRow row{subject.name, comparison.regions(), falloff, ridge};
         row.de_whole = whole.error.de_all;

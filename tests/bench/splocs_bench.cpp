@@ -53,7 +53,7 @@ struct Kernels {
         options(prepared_options(sequence, count)),
         support(support_function(options.distances, sequence.vertices(), 0.1 * sequence.diameter(),
                                  0.7 * sequence.diameter())),
-        start(greedy_start(*X, support, options, reduction)),
+        start(greedy_start(*X, support, options)),
         products(initial_components(*X, start.components, reduction)) {
     SupportMaps followed(support, count, reduction.part(), {});
     followed.follow(products.C, reduction);
@@ -105,9 +105,7 @@ std::vector<Case> splocs_kernel_cases(const std::string& name, const MeshSequenc
   const UpdateWeights weights{W, W.transpose() * W};
   const AdmmOptions admm{kernels->options.sparsity, kernels->options.rho, kAdmmSteps};
   return {{{kGroup, kStart, size, start_work(frames, vertices, count, settings.machine)},
-           [kernels] {
-             greedy_start(*kernels->X, kernels->support, kernels->options, kernels->reduction);
-           }},
+           [kernels] { greedy_start(*kernels->X, kernels->support, kernels->options); }},
           {{kGroup, kWeightStep, size, weight_work(frames, count)},
            [kernels, W = Eigen::MatrixXd(W)]() mutable {
              W = updated_weights(std::move(W), kernels->products.P, kernels->products.H, true);

@@ -111,10 +111,10 @@ std::vector<SteadyRow> steady_rows(const Subject& subject, bool quick) {
   for (const double symmetry : {0.1, 1.0, 10.0}) {
     char words[32];
     std::snprintf(words, sizeof words, "--symmetry %g", symmetry);
-    add({.space = Space::blendshape, .blendshape = {.symmetry = symmetry}}, words);
+    add({.space = Space::blendshape, .symmetry = symmetry}, words);
   }
   for (const Exclusive exclusive : {Exclusive::eyes, Exclusive::all}) {
-    add({.space = Space::blendshape, .blendshape = {.exclusive = exclusive}},
+    add({.space = Space::blendshape, .exclusive = exclusive},
         "--exclusive " + std::string(choice_name(exclusive)));
   }
   return rows;

@@ -39,7 +39,7 @@ class PluginFormat : public testing::Test {
     const fs::path target = folder_.path() / name;
     const Format& format = table_.writer({"out", kind_of(data), ""}, target);
     const Parameters parameters(format.writing);
-    return format.write(data, {.target = target, .parameters = parameters});
+    return format.write(data, {.target = target, .parameters = parameters}, {});
   }
 
   std::vector<std::string> names() const {
@@ -76,15 +76,15 @@ TEST_F(PluginFormat, ReadsAValueWithItsOptionsForTheMeshAtHand) {
   Parameters parameters(format.reading);
   ReadRequest request{.parameters = parameters};
   request.vertices = 25;
-  const ReadValue read = format.read(text, request);
+  const ReadValue read = format.read(text, request, {});
   EXPECT_EQ(std::get<RegionData>(read.value.data).regions.regions.size(), 1u);
   EXPECT_EQ(read.value.name, text);
   EXPECT_THAT(read.files, ElementsAre(fs::path(text)));
   EXPECT_THAT(read.notes, ElementsAre(HasSubstr("a note")));
   parameters.set("vertices", std::int64_t{24});
-  EXPECT_THAT([&] { format.read(text, request); },
+  EXPECT_THAT([&] { format.read(text, request, {}); },
               ThrowsMessage<MismatchError>(AllOf(HasSubstr("24 vertices"), HasSubstr("25"))));
-  EXPECT_THROW(format.read(folder_.path() / "none.spot", request), IoError);
+  EXPECT_THROW(format.read(folder_.path() / "none.spot", request, {}), IoError);
 }
 
 TEST_F(PluginFormat, WritesAValueUnderTheNameThatWasAskedFor) {
@@ -111,7 +111,7 @@ TEST_F(PluginFormat, ThatFailsEndsWithItsMessageAndLeavesNothing) {
   EXPECT_THAT(names(), IsEmpty());
   const std::string text = file("b.none");
   const Parameters none;
-  EXPECT_THAT([&] { table_.reader(DataKind::sequence, text).read(text, {.parameters = none}); },
+  EXPECT_THAT([&] { table_.reader(DataKind::sequence, text).read(text, {.parameters = none}, {}); },
               ThrowsMessage<std::runtime_error>(AllOf(HasSubstr("b.none"), HasSubstr("0 values"))));
 }
 

@@ -11,8 +11,8 @@
 #include "plugins/c/plugins.h"
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 namespace {
@@ -63,14 +63,14 @@ MeshSequence take() {
   return {Connectivity::from_triangles(vertices, shape.triangles), frames};
 }
 
-Outcome misbehave(const std::string& how, const Progress& progress = {}) {
+Outcome misbehave(const std::string& how, const Context& context = {}) {
   static const Loaded loaded({kPlugins / "misbehaving"});
   const Operation& operation = *loaded.table.find("misbehave");
   Invocation invocation;
   invocation.inputs["sequence"] = {{"take", FieldSequence(take())}};
   invocation.parameters = Parameters(loaded.table.parameters_of(operation));
   invocation.parameters.set("how", how);
-  invocation.progress = progress;
+  invocation.context = context;
   return operation.run(invocation);
 }
 
@@ -208,7 +208,7 @@ TEST(PluginRun, FailsWithItsOwnStatusAndWords) {
 }
 
 TEST(PluginRun, IsCancelledHoweverItTellsSo) {
-  const Progress never = [](double) { return false; };
+  const Context never = Context().with_progress([](double) { return false; });
   for (const char* how : {"throw-when-cancelled", "fail-when-cancelled", "percent"}) {
     EXPECT_THROW(misbehave(how, never), Cancelled) << how;
     EXPECT_NO_THROW(misbehave(how)) << how;
@@ -217,10 +217,10 @@ TEST(PluginRun, IsCancelledHoweverItTellsSo) {
 
 TEST(PluginRun, ReportsProgressFromNothingToAll) {
   std::vector<double> shares;
-  misbehave("percent", [&shares](double share) {
+  misbehave("percent", Context().with_progress([&shares](double share) {
     shares.push_back(share);
     return true;
-  });
+  }));
   EXPECT_THAT(shares, ElementsAre(1, 0, 0));
 }
 
@@ -289,7 +289,7 @@ TEST(SmoothSample, MovesVerticesTowardsTheirNeighbours) {
   EXPECT_EQ(all.connectivity().polygons, input.connectivity().polygons);
   invocation.parameters.set("strength", 0.0);
   EXPECT_EQ(run().positions(), input.positions());
-  invocation.progress = [](double) { return false; };
+  invocation.context = Context().with_progress([](double) { return false; });
   EXPECT_THROW(run(), Cancelled);
 }
 

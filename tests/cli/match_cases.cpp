@@ -65,7 +65,7 @@ std::vector<BadInput> match_cases() {
           {"--markers: 2 files or words (auto), expected one for all targets or one for each of 1"},
           ",m.txt"),
       refused("index_base_2", right, 2, {"index-base"}, " --index-base 2"),
-      refused("markers_and_correspondence", right, 2, {"--markers and --correspondence"},
+      refused("markers_and_correspondence", right, 2, {"--markers: --correspondence tells"},
               " --correspondence m.txt"),
       {"index_base_alone",
        "transfer",

@@ -136,8 +136,8 @@ TEST(FoundCorrespondence, PairsUnmarkedPartsThatLieOverEachOther) {
 TEST(Correspondence, HasTheSameBytesForEveryNumberOfThreads) {
   const TriMesh source = test::mesh_of(test::sphere(3)), target = test::mesh_of(test::sphere(4));
   const std::vector<Marker> markers = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {4, 4}, {5, 5}};
-  const auto one = find_correspondence(source, target, markers, {.threads = 1});
-  const auto three = find_correspondence(source, target, markers, {.threads = 3});
+  const auto one = find_correspondence(source, target, markers, {}, Context().with_threads(1));
+  const auto three = find_correspondence(source, target, markers, {}, Context().with_threads(3));
   EXPECT_EQ(one.correspondence.parts, three.correspondence.parts);
   EXPECT_EQ(one.correspondence.residuals, three.correspondence.residuals);
   EXPECT_EQ(one.quality.folded, 0);

@@ -168,7 +168,7 @@ TEST_F(KnownFace, LosesLandmarksOnWhichViewsDisagree) {
                              testing::Not(testing::Contains(62))));
   EXPECT_EQ(found.views_with_face, found.views);
   const std::vector<FaceLandmark> one =
-      find_landmarks(head_, doubtful, {.pixels = 96, .threads = 1}).found;
+      find_landmarks(head_, doubtful, {.pixels = 96}, Context().with_threads(1)).found;
   ASSERT_EQ(one.size(), found.found.size());
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_EQ(one[i].vertex, found.found[i].vertex);
@@ -207,8 +207,8 @@ TEST_F(KnownFace, ThatIsNotFoundOrCannotBeIsAnErrorThatSaysWhatToDo) {
 }
 
 TEST_F(KnownFace, CanBeCancelledAndNeedsASpreadInItsRange) {
-  EXPECT_THROW(find_landmarks(head_, pixels_of_all(), {.progress = [](double) { return false; }}),
-               Cancelled);
+  const Context cancelled = Context().with_progress([](double) { return false; });
+  EXPECT_THROW(find_landmarks(head_, pixels_of_all(), {}, cancelled), Cancelled);
   EXPECT_THROW(find_landmarks(head_, pixels_of_all(), {.max_spread = -1}), std::invalid_argument);
 }
 

@@ -199,8 +199,8 @@ TEST(SurfaceFit, OfASimilarMeshIsThatMesh) {
 
 TEST(SurfaceFit, HasTheSameBytesForEveryNumberOfThreads) {
   const TriMesh source = test::mesh_of(test::sphere(3)), target = test::mesh_of(egg(3));
-  const SurfaceFit one = fit_to_surface(source, target, kCorners, {.threads = 1});
-  const SurfaceFit three = fit_to_surface(source, target, kCorners, {.threads = 3});
+  const SurfaceFit one = fit_to_surface(source, target, kCorners, {}, Context().with_threads(1));
+  const SurfaceFit three = fit_to_surface(source, target, kCorners, {}, Context().with_threads(3));
   EXPECT_EQ(one.positions, three.positions);
 }
 
@@ -320,9 +320,8 @@ TEST(SurfaceFit, RefusesOptionsOutOfRange) {
 
 TEST(SurfaceFit, StopsWhereProgressSaysSo) {
   const TriMesh mesh = test::mesh_of(test::sphere(1));
-  EXPECT_THROW(
-      fit_to_surface(mesh, mesh, kCorners, {.progress = [](double share) { return share < 0.5; }}),
-      Cancelled);
+  const Context half = Context().with_progress([](double share) { return share < 0.5; });
+  EXPECT_THROW(fit_to_surface(mesh, mesh, kCorners, {}, half), Cancelled);
 }
 
 TEST(DeformationSystem, KnowsNeighboursAcrossEdges) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -16,10 +17,12 @@ constexpr auto kAlternating = FitOptions::Solver::alternating;
 constexpr double kLiteralRounding = 1e-9;
 
 TEST(Alternation, IsThePapers) {
-  for (const double upper : {1.0, std::numeric_limits<double>::infinity()}) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const std::optional<double> upper : {std::optional(1.0), std::optional<double>()}) {
     for (unsigned seed = 0; seed < 10; ++seed) {
       const test::SyntheticClip clip = test::synthetic_clip(seed);
-      test::LiteralFit literal(clip.model, clip.vertices, clip.points.row(0), 2, upper, 0.3);
+      test::LiteralFit literal(clip.model, clip.vertices, clip.points.row(0), 2,
+                               upper.value_or(kInfinity), 0.3);
       for (int iteration = 1; iteration <= 4; ++iteration) {
         literal.iterate();
         const FrameFit fit = test::fit(clip, {.solver = kAlternating,

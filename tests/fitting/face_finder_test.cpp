@@ -158,8 +158,8 @@ TEST_F(FaceImages, OfNoiseOrBelowTheConfidenceAskedForShowNoFace) {
 }
 
 TEST_F(FaceImages, CanBeCancelled) {
-  EXPECT_THROW(track_face(ImageFiles({photo_, photo_}),
-                          {.progress = [](double share) { return share == 0; }}),
+  EXPECT_THROW(track_face(ImageFiles({photo_, photo_}), {},
+                          Context().with_progress([](double share) { return share == 0; })),
                Cancelled);
 }
 

@@ -104,8 +104,8 @@ TEST(LandmarkFitter, KeepsExpressionsWithinTheirBounds) {
     }
     EXPECT_EQ(least, 0);
     EXPECT_EQ(most, 1);
-    const double infinity = std::numeric_limits<double>::infinity();
-    for (const FrameFit& fit : test::fit(clip, {.solver = solver, .max_expression = infinity})) {
+    for (const FrameFit& fit :
+         test::fit(clip, {.solver = solver, .max_expression = std::nullopt})) {
       unbounded = std::max(unbounded, fit.beta.maxCoeff());
       EXPECT_GE(fit.beta.minCoeff(), 0);
     }
@@ -194,11 +194,9 @@ TEST(LandmarkFitter, CanBeCancelled) {
   const test::SyntheticClip clip = test::synthetic_clip(15, {.frames = 3});
   const LandmarkFitter fitter(clip.model, clip.vertices);
   for (const Shape shape : {Shape::clip, Shape::frame}) {
-    EXPECT_THROW(
-        fitter.fit(clip.points,
-                   {.shape = shape, .tolerance = 0, .progress = [](double) { return false; }},
-                   clip.times),
-        Cancelled);
+    EXPECT_THROW(fitter.fit(clip.points, {.shape = shape, .tolerance = 0}, clip.times, {},
+                            Context().with_progress([](double) { return false; })),
+                 Cancelled);
   }
 }
 
@@ -254,7 +252,8 @@ TEST(LandmarkFitter, RefusesOptionsOutOfRangeOrWithoutWhatTheyNeed) {
     return test::message_of<std::invalid_argument>([&] { test::fit(clip, options); });
   };
   EXPECT_THAT(message({.iterations = 0}), HasSubstr("iterations is 0; it must be from 1"));
-  EXPECT_THAT(message({.max_expression = 0}), HasSubstr("max_expression must be positive"));
+  EXPECT_THAT(message({.max_expression = 0}),
+              HasSubstr("max_expression is 0; it must be at least"));
   EXPECT_THAT(message({.max_expression = 2, .smoothness = 1}),
               HasSubstr("smoothness needs expressions of at most 1"));
   EXPECT_THAT(message({.camera = FitOptions::Camera::perspective}), HasSubstr("focal length"));

@@ -109,7 +109,7 @@ class VideoTrack : public testing::Test {
 TEST_F(VideoTrack, FindsWhatASearchOfEveryFrameFindsOnAnyNumberOfThreads) {
   std::vector<Image> images = talking_head(33, 320, 240);
   std::fill(images.begin() + 10, images.begin() + 20, Image(320, 240, {90, 100, 110}));
-  const FaceTrack near = track_face(DrawnImages(images, true), {.threads = 1});
+  const FaceTrack near = track_face(DrawnImages(images, true), {}, Context().with_threads(1));
   EXPECT_EQ(seen(near.landmarks), all_but(33, 10, 20));
   EXPECT_THAT(near.notes, testing::Contains(HasSubstr("10 of 33 images show no face")));
 
@@ -119,7 +119,7 @@ TEST_F(VideoTrack, FindsWhatASearchOfEveryFrameFindsOnAnyNumberOfThreads) {
   RecordProperty("distance", std::to_string(distance));
   EXPECT_LT(distance, 0.5);
 
-  const FaceTrack several = track_face(DrawnImages(images, true), {.threads = 3});
+  const FaceTrack several = track_face(DrawnImages(images, true), {}, Context().with_threads(3));
   EXPECT_TRUE(same_bytes(near.landmarks.points, several.landmarks.points));
   EXPECT_EQ(near.landmarks.confidence, several.landmarks.confidence);
 }
@@ -182,8 +182,9 @@ TEST_F(VideoTrack, ThatBreaksOffIsAnErrorUnlessOnlySoundFramesAreTaken) {
 TEST_F(VideoTrack, CanBeCancelled) {
   const DrawnImages images(std::vector<Image>(40, talking_head(1, 320, 240).front()), true);
   for (const int threads : {1, 2}) {
-    const FaceOptions options{.threads = threads, .progress = [](double) { return false; }};
-    EXPECT_THROW(track_face(images, options), Cancelled);
+    const Context context =
+        Context().with_threads(threads).with_progress([](double) { return false; });
+    EXPECT_THROW(track_face(images, {}, context), Cancelled);
   }
 }
 

@@ -149,9 +149,9 @@ std::vector<Target> model_targets() {
        [](const fs::path& file) {
          const fs::path mesh = fs::path(file).replace_extension(".obj");
          write_bytes(mesh, "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl skin\nf 1 2 3\n");
-         const SequenceRead read = read_sequence(mesh.string(), {.threads = 1});
-         write_sequence(read.sequence, file.parent_path() / "b" / "c.obj",
-                        {.overwrite = true, .threads = 1});
+         const SequenceRead read = read_sequence(mesh.string(), {}, Context().with_threads(1));
+         write_sequence(read.sequence, file.parent_path() / "b" / "c.obj", {.overwrite = true}, {},
+                        Context().with_threads(1));
        },
        {text("newmtl skin\nKd 1 0.5 0.5\nmap_Kd -s 1 1 1 skin.png\n")}},
       {"eos", "pair.bin", read_eos_pair, {write_eos_pair}},
@@ -161,7 +161,7 @@ std::vector<Target> model_targets() {
          const fs::path folder = file.parent_path();
          fs::create_directories(folder / "targets");
          for (const char* mesh : {"neutral.ply", "targets/smile.ply"}) write_grid(folder / mesh);
-         read_model(folder, 1);
+         read_model(folder, Context().with_threads(1));
        },
        {text(R"({"neutral": "neutral.ply", "expressions": "targets"})")}},
       {"weights_csv",

@@ -99,14 +99,14 @@ void read_times(const fs::path& file) {
   static const fs::path take = [&file] {
     const fs::path written = file.parent_path() / "written";
     write_sequence(*std::get<FieldSequence>(value_of(DataKind::sequence)).frames,
-                   written / "take.npy", {.overwrite = true, .threads = 1});
+                   written / "take.npy", {.overwrite = true}, {}, Context().with_threads(1));
     fs::remove(written / file.filename());
     for (const auto& entry : fs::directory_iterator(written)) {
       fs::rename(entry.path(), file.parent_path() / entry.path().filename());
     }
     return file.parent_path() / "take.npy";
   }();
-  read_sequence(take.string(), {.threads = 1});
+  read_sequence(take.string(), {}, Context().with_threads(1));
 }
 
 /// Each of the grid's triangles is its own partner.

@@ -110,7 +110,7 @@ TEST(FailedAllocation, WhileWritingLeavesNothingUnderTheName) {
   for (const std::string& name : kTakes) {
     const test::TemporaryFolder folder;
     const auto write = [&] {
-      write_sequence(take, folder / name, {.overwrite = true, .threads = 1});
+      write_sequence(take, folder / name, {.overwrite = true}, {}, Context().with_threads(1));
     };
     const int failed = fail_each(write, [&] {
       for (const std::string& left_behind : folder.names()) {
@@ -126,7 +126,8 @@ TEST(FailedAllocation, WhileReadingIsAnErrorAndNotACrash) {
   for (const std::string& name : kTakes) {
     write_sequence(short_take(), folder / name, {.overwrite = true});
     const std::string path = (folder / name).string();
-    EXPECT_GT(fail_each([&] { read_sequence(path, {.threads = 1}); }, [] {}), 2) << name;
+    EXPECT_GT(fail_each([&] { read_sequence(path, {}, Context().with_threads(1)); }, [] {}), 2)
+        << name;
   }
   write_bytes(folder / "a.json", "[\"" + std::string(2 * kLarge, 'x') + "\"]");
   EXPECT_GT(fail_each([&] { json_text(read_json(folder / "a.json")); }, [] {}), 2);

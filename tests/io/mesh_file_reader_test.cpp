@@ -291,15 +291,17 @@ TEST_P(EveryFormat, IsWrittenAndReadAlikeByAnyNumberOfThreads) {
   const TemporaryFolder folder;
   const MeshSequence sequence = twenty_frames();
   const fs::path one = folder / "1";
-  write_sequence(sequence, one, {.format = format(), .threads = 1});
-  const Frames read = read_sequence(one.string(), {.threads = 1}).sequence.positions();
+  write_sequence(sequence, one, {.format = format()}, {}, Context().with_threads(1));
+  const Frames read =
+      read_sequence(one.string(), {}, Context().with_threads(1)).sequence.positions();
   for (const int threads : {2, 3}) {
     const fs::path other = folder / std::to_string(threads);
-    for (const fs::path& file :
-         write_sequence(sequence, other, {.format = format(), .threads = threads})) {
+    for (const fs::path& file : write_sequence(sequence, other, {.format = format()}, {},
+                                               Context().with_threads(threads))) {
       EXPECT_EQ(read_file(file), read_file(one / file.filename()));
     }
-    EXPECT_EQ(read_sequence(one.string(), {.threads = threads}).sequence.positions(), read);
+    EXPECT_EQ(read_sequence(one.string(), {}, Context().with_threads(threads)).sequence.positions(),
+              read);
   }
 }
 
@@ -310,8 +312,8 @@ TEST_P(EveryFormat, NamesTheFirstBadFrameWhicheverThreadFindsIt) {
     write_bytes(folder / "a" / (frame + GetParam()), "?");
   }
   for (const int threads : {1, 2, 3}) {
-    const std::string message =
-        message_of<IoError>([&] { read_sequence((folder / "a").string(), {.threads = threads}); });
+    const std::string message = message_of<IoError>(
+        [&] { read_sequence((folder / "a").string(), {}, Context().with_threads(threads)); });
     EXPECT_THAT(message, testing::HasSubstr("frame_0005." + GetParam()));
   }
 }
@@ -331,11 +333,11 @@ TEST(LargeArrays, AreWrittenAndReadAlikeByAnyNumberOfThreads) {
   const Frames frames = large_frames();
   for (const bool single : {false, true}) {
     const Frames expected = single ? Frames(frames.cast<float>().cast<double>()) : frames;
-    write_npy_frames(folder / "1.npy", frames, single, 1);
+    write_npy_frames(folder / "1.npy", frames, single, Context().with_threads(1));
     for (const int threads : {1, 2, 3}) {
-      write_npy_frames(folder / "n.npy", frames, single, threads);
+      write_npy_frames(folder / "n.npy", frames, single, Context().with_threads(threads));
       EXPECT_EQ(read_file(folder / "n.npy"), read_file(folder / "1.npy"));
-      EXPECT_EQ(read_npy_frames(folder / "1.npy", threads), expected);
+      EXPECT_EQ(read_npy_frames(folder / "1.npy", Context().with_threads(threads)), expected);
     }
   }
 }
@@ -349,7 +351,8 @@ TEST(LargeArrays, NameTheFirstVertexWithoutAFinitePosition) {
     frames(9, 29999) = frames(3, 20002) = frames(3, 20004) = bad;
     write_npy_frames(folder / "a.npy", frames);
     for (const int threads : {1, 2, 3}) {
-      EXPECT_EQ(message_of<IoError>([&] { read_npy_frames(folder / "a.npy", threads); }),
+      EXPECT_EQ(message_of<IoError>(
+                    [&] { read_npy_frames(folder / "a.npy", Context().with_threads(threads)); }),
                 (folder / "a.npy").string() +
                     ": frame 3: vertex 6667 has no usable position: " + readable(bad));
     }

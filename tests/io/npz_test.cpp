@@ -142,8 +142,8 @@ TEST_F(NpzFiles, ComeBackBitByBitWithPolygonsTimesAndRest) {
 TEST_F(NpzFiles, AreTheSameBytesEveryTime) {
   const MeshSequence sequence(test::mesh_of(test::octahedron()).connectivity,
                               Frames::Constant(3, 18, 0.5));
-  write_sequence(sequence, folder_ / "a.npz", {.threads = 1});
-  write_sequence(sequence, folder_ / "b.npz", {.threads = 3});
+  write_sequence(sequence, folder_ / "a.npz", {}, {}, Context().with_threads(1));
+  write_sequence(sequence, folder_ / "b.npz", {}, {}, Context().with_threads(3));
   EXPECT_EQ(read_file(folder_ / "a.npz"), read_file(folder_ / "b.npz"));
 }
 

@@ -166,9 +166,10 @@ TEST_F(TwelveFiles, WeightsCannotDriveThem) {
 
 TEST_F(TwelveFiles, ReadingStopsWhenProgressSaysSo) {
   int calls = 0;
-  EXPECT_THROW(
-      read_sequence(text(), {.threads = 1, .progress = [&](double) { return ++calls < 3; }}),
-      Cancelled);
+  EXPECT_THROW(read_sequence(text(), {}, Context().with_threads(1).with_progress([&](double) {
+                 return ++calls < 3;
+               })),
+               Cancelled);
   EXPECT_EQ(calls, 3);
 }
 
@@ -315,8 +316,8 @@ TEST(WriteSequence, KeepsWhatIsAPartOfAnotherOfItsName) {
 TEST(WriteSequence, LeavesNothingWhenCancelled) {
   const TemporaryFolder folder;
   for (const char* name : {"a/b/s", "a/b/s.npy", "a/b/s.npz"}) {
-    EXPECT_THROW(write_sequence(octahedra(5, pose(1)), folder / name,
-                                {.progress = [](double share) { return share < 0.5; }}),
+    EXPECT_THROW(write_sequence(octahedra(5, pose(1)), folder / name, {}, {},
+                                Context().with_progress([](double share) { return share < 0.5; })),
                  Cancelled)
         << name;
     EXPECT_THAT(folder.names(), IsEmpty()) << name;

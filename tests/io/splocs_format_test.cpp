@@ -83,11 +83,11 @@ TEST_F(Splocs, SequenceOfTheReferenceIsRead) {
 }
 
 TEST_F(Splocs, SequenceIsTheSameBytesEveryTime) {
-  write_sequence(sequence_of_quads(), folder_ / "a.h5", {.threads = 1});
+  write_sequence(sequence_of_quads(), folder_ / "a.h5", {}, {}, Context().with_threads(1));
   { const std::vector<std::string> scribble(1000, std::string(5000, 'x')); }
   std::srand(1);
   const MeshSequence written = read_sequence((folder_ / "a.h5").string()).sequence;
-  write_sequence(written, folder_ / "b.h5", {.threads = 2});
+  write_sequence(written, folder_ / "b.h5", {}, {}, Context().with_threads(2));
   EXPECT_TRUE(read_file(folder_ / "a.h5") == read_file(folder_ / "b.h5"));
 }
 

@@ -129,7 +129,7 @@ TEST_F(Vtkhdf, KeepsWholeNumbersThatAnIntDoesNotHold) {
 }
 
 TEST_F(Vtkhdf, IsTheSameBytesEveryTime) {
-  write_vtkhdf(sequence_, folder_ / "b.vtkhdf", {.threads = 1});
+  write_vtkhdf(sequence_, folder_ / "b.vtkhdf", {}, {}, Context().with_threads(1));
   EXPECT_TRUE(read_file(file_) == read_file(folder_ / "b.vtkhdf"));
 }
 

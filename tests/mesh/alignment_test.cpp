@@ -297,7 +297,8 @@ TEST(StableAlignment, OfAStreamIsBitByBitTheOneInMemory) {
   const auto stream = test::streamed(moved);
   const std::vector<RigidTransform> expected = literal_stable_motion(moved);
   for (const int threads : {1, 3}) {
-    const std::vector<RigidTransform> found = rigid_motion(*stream, {.threads = threads});
+    const std::vector<RigidTransform> found =
+        rigid_motion(*stream, {}, Context().with_threads(threads));
     ASSERT_EQ(found.size(), expected.size());
     for (std::size_t f = 0; f < found.size(); ++f) {
       EXPECT_TRUE(found[f].rotation == expected[f].rotation) << f;
@@ -315,13 +316,15 @@ TEST(StableAlignment, OfAStreamThatBreaksThrowsWhatReadingThrows) {
 
 TEST(StableAlignment, ReportsProgressThatEndsAtOneOrWhenAskedTo) {
   double last = -1;
-  align(opening_jaw(2), {.progress = [&last](double share) {
-          EXPECT_GE(share, last);
-          last = share;
-          return true;
-        }});
+  const auto rising = [&last](double share) {
+    EXPECT_GE(share, last);
+    last = share;
+    return true;
+  };
+  align(opening_jaw(2), {}, Context().with_progress(rising));
   EXPECT_EQ(last, 1);
-  EXPECT_THROW(align(opening_jaw(2), {.progress = [](double) { return false; }}), Cancelled);
+  const Context cancelled = Context().with_progress([](double) { return false; });
+  EXPECT_THROW(align(opening_jaw(2), {}, cancelled), Cancelled);
 }
 
 TEST(Alignment, OfAllVerticesIsTheRigidFitOfEachFrame) {
@@ -337,7 +340,8 @@ TEST(Alignment, OfAStreamIsBitByBitTheOneInMemory) {
   const MeshSequence moved = with_motion(opening_jaw(8), random_motion(8, 40, 1));
   const auto stream = test::streamed(moved);
   const Alignment alignment = align(moved, {.vertices = AlignmentVertices::all});
-  const auto motion = rigid_motion(*stream, {.vertices = AlignmentVertices::all, .threads = 3});
+  const auto motion =
+      rigid_motion(*stream, {.vertices = AlignmentVertices::all}, Context().with_threads(3));
   const auto still = without_motion(stream, motion);
   EXPECT_TRUE(MeshSequence(*still).positions() == alignment.sequence.positions());
   const auto back = with_motion(still, motion);

@@ -77,13 +77,14 @@ TEST(FrameSource, BlocksHoldEachFrameOnceAndAreBounded) {
   const Counted source(40, vertices);
   std::mutex mutex;
   std::multiset<int> seen;
-  for_each_block(source, {.threads = 3}, [&](int first, const Frames& poses) {
+  const auto see = [&](int first, const Frames& poses) {
     const std::lock_guard lock(mutex);
     for (Eigen::Index row = 0; row < poses.rows(); ++row) {
       seen.insert(first + static_cast<int>(row));
       EXPECT_EQ(poses(row, 0), 1000.0 * static_cast<double>(first + row));
     }
-  });
+  };
+  for_each_block(source, see, Context().with_threads(3));
   EXPECT_EQ(seen.size(), 40u);
   EXPECT_EQ(std::set<int>(seen.begin(), seen.end()).size(), 40u);
   EXPECT_LE(source.most_bytes(), kBlockBytes);
@@ -92,16 +93,17 @@ TEST(FrameSource, BlocksHoldEachFrameOnceAndAreBounded) {
 TEST(FrameSource, AFrameLargerThanABlockIsABlock) {
   const Counted source(2, static_cast<int>(kBlockBytes / 24) + 1);
   int blocks = 0;
-  for_each_block(source, {.threads = 1}, [&](int, const Frames& poses) {
+  const auto count = [&blocks](int, const Frames& poses) {
     EXPECT_EQ(poses.rows(), 1);
     ++blocks;
-  });
+  };
+  for_each_block(source, count, Context().with_threads(1));
   EXPECT_EQ(blocks, 2);
 }
 
 TEST(FrameSource, BecomesASequenceInMemory) {
   const Counted source(70, 3);
-  const MeshSequence sequence(source, {.threads = 2});
+  const MeshSequence sequence(source, Context().with_threads(2));
   EXPECT_EQ(sequence.positions(), source.read(0, 70));
   EXPECT_EQ(sequence.times(), source.times());
   EXPECT_TRUE(sequence.rest_is_known());
@@ -153,15 +155,15 @@ double added_by(int frame) {
 }
 
 /// The sum of what frames add, and of each its number.
-FrameNumbers numbers_of(const FrameSource& source, const BlockOptions& options) {
-  return over_frames(
-      source, 1, 2, options, [](int first, const FrameBlock& block, FrameRows& numbers) {
-        ASSERT_TRUE((numbers.array() == 0).all());
-        ASSERT_EQ(numbers.rows(), block.frames());
-        for (int row = 0; row < block.frames(); ++row) {
-          numbers.row(row) << added_by(first + row), first + row, block.poses()(row, 0);
-        }
-      });
+FrameNumbers numbers_of(const FrameSource& source, const Context& context) {
+  const auto work = [](int first, const FrameBlock& block, FrameRows& numbers) {
+    ASSERT_TRUE((numbers.array() == 0).all());
+    ASSERT_EQ(numbers.rows(), block.frames());
+    for (int row = 0; row < block.frames(); ++row) {
+      numbers.row(row) << added_by(first + row), first + row, block.poses()(row, 0);
+    }
+  };
+  return over_frames(source, 1, 2, work, context);
 }
 
 /// Frames of 0.6 MB, so that it takes several blocks.
@@ -179,7 +181,9 @@ void expect_all_frames(const FrameNumbers& found) {
 
 TEST(OverFrames, AddsInTheOrderOfTheFramesAndKeepsWhatIsOfEach) {
   const Counted source(kFrames, kVertices);
-  for (const int threads : {1, 3}) expect_all_frames(numbers_of(source, {.threads = threads}));
+  for (const int threads : {1, 3}) {
+    expect_all_frames(numbers_of(source, Context().with_threads(threads)));
+  }
   EXPECT_LE(source.most_bytes(), kBlockBytes);
 }
 
@@ -188,7 +192,7 @@ TEST(OverFrames, GivesTheSameOnAllRanksOfWhichEachReadsItsShare) {
     std::vector<int> read(ranks);
     test::on_ranks(ranks, [&](const Ranks& rank) {
       const Counted source(kFrames, kVertices);
-      expect_all_frames(numbers_of(source, {.threads = 2, .ranks = &rank}));
+      expect_all_frames(numbers_of(source, Context().with_threads(2).with_ranks(rank)));
       read[rank.rank()] = source.frames_read();
     });
     EXPECT_EQ(std::accumulate(read.begin(), read.end(), 0), kFrames);
@@ -199,12 +203,12 @@ TEST(OverFrames, GivesTheSameOnAllRanksOfWhichEachReadsItsShare) {
 
 TEST(OverFrames, ThrowsWhatWorkThrowsAndEndsWhereProgressAsksForIt) {
   const auto work = [](int, const FrameBlock&, FrameRows&) { throw std::runtime_error("broken"); };
-  EXPECT_THAT([&] { over_frames(Counted(9, 2), 1, 0, {}, work); },
+  EXPECT_THAT([&] { over_frames(Counted(9, 2), 1, 0, work); },
               ThrowsMessage<std::runtime_error>("broken"));
   const auto none = [](int, const FrameBlock&, FrameRows&) {};
-  EXPECT_THROW(
-      over_frames(Counted(9, 2), 1, 0, {.progress = [](double share) { return share < 1; }}, none),
-      Cancelled);
+  const auto until_done = [](double share) { return share < 1; };
+  EXPECT_THROW(over_frames(Counted(9, 2), 1, 0, none, Context().with_progress(until_done)),
+               Cancelled);
 }
 
 TEST(ForEachBlock, GivesEveryFrameToAllRanksOfWhichEachReadsItsShare) {
@@ -214,13 +218,13 @@ TEST(ForEachBlock, GivesEveryFrameToAllRanksOfWhichEachReadsItsShare) {
     test::on_ranks(ranks, [&](const Ranks& rank) {
       const Counted source(kMany, 30000);
       std::set<int> seen;
-      for_each_block(source, {.threads = 1, .ranks = &rank},
-                     [&seen](int first, const Frames& poses) {
-                       for (int row = 0; row < poses.rows(); ++row) {
-                         EXPECT_EQ(poses(row, 1), 1000.0 * (first + row) + 1);
-                         EXPECT_TRUE(seen.insert(first + row).second);
-                       }
-                     });
+      const auto see = [&seen](int first, const Frames& poses) {
+        for (int row = 0; row < poses.rows(); ++row) {
+          EXPECT_EQ(poses(row, 1), 1000.0 * (first + row) + 1);
+          EXPECT_TRUE(seen.insert(first + row).second);
+        }
+      };
+      for_each_block(source, see, Context().with_threads(1).with_ranks(rank));
       EXPECT_EQ(seen.size(), kMany);
       EXPECT_LE(source.frames_read(), kMany / ranks + 2);
       read += source.frames_read();
@@ -309,7 +313,7 @@ TEST(FrameSource, MotionIsTheRootMeanSquareForEveryNumberOfThreads) {
   const Counted source(130, 3);
   double sum = 0;
   for (int f = 0; f < 130; ++f) sum += source.read(f, 1).squaredNorm();
-  EXPECT_EQ(motion(source, {.threads = 1}), motion(source, {.threads = 3}));
+  EXPECT_EQ(motion(source, Context().with_threads(1)), motion(source, Context().with_threads(3)));
   EXPECT_NEAR(motion(source), std::sqrt(sum / (130 * 3)), 1e-9);
 }
 

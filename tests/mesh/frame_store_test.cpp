@@ -47,12 +47,14 @@ class FrameStoreTest : public testing::TestWithParam<std::size_t> {
 TEST_P(FrameStoreTest, GivesBackWhatSeveralThreadsWroteAndLeavesNoName) {
   const MeshSequence sequence = numbered(50, 11);
   FrameStore store(sequence.header(), GetParam());
-  parallel_for(25, 3, [&](int i) { store.write(2 * i, sequence.read(2 * i, 2)); });
+  const Context three = Context().with_threads(3);
+  parallel_for(
+      25, [&](int i) { store.write(2 * i, sequence.read(2 * i, 2)); }, three);
   EXPECT_THAT(folder_.names(), IsEmpty());
   EXPECT_THAT(store.commit(), IsEmpty());
   EXPECT_TRUE(store.read(0, 50) == sequence.positions());
   EXPECT_TRUE(store.read(17, 5) == sequence.positions().middleRows(17, 5));
-  EXPECT_TRUE(MeshSequence(store, {.threads = 3}).positions() == sequence.positions());
+  EXPECT_TRUE(MeshSequence(store, three).positions() == sequence.positions());
   EXPECT_TRUE(store.times() == sequence.times());
   Frames some(4, 6);
   store.read_vertices(3, 5, FramesView(some.data(), 4, 6));
@@ -108,7 +110,7 @@ TEST(Stored, IsTheSourceItselfWhereThatIsQuick) {
 TEST(Stored, ReadsASlowSourceOnce) {
   const MeshSequence sequence = numbered(300, 2);
   const auto slow = test::streamed(sequence);
-  const auto kept = stored(slow, {.threads = 3});
+  const auto kept = stored(slow, Context().with_threads(3));
   EXPECT_EQ(slow->frames_read(), 300);
   EXPECT_TRUE(MeshSequence(*kept).positions() == sequence.positions());
   EXPECT_EQ(slow->frames_read(), 300);
@@ -121,8 +123,8 @@ TEST(Stored, ThrowsWhatReadingThrows) {
 }
 
 TEST(Stored, EndsWhereProgressAsksForIt) {
-  EXPECT_THROW(stored(test::streamed(numbered(300, 2)), {.progress = [](double) { return false; }}),
-               Cancelled);
+  const Context cancelled = Context().with_progress([](double) { return false; });
+  EXPECT_THROW(stored(test::streamed(numbered(300, 2)), cancelled), Cancelled);
 }
 
 }  // namespace

@@ -47,8 +47,8 @@ Positions offset_everywhere(double size) {
   return no_offset().unaryExpr([&](double) { return number(random); });
 }
 
-RestBeyondFrames found_in(const MeshSequence& sequence, const BlockOptions& options = {}) {
-  return rest_beyond_frames(std::make_shared<const MeshSequence>(sequence), options);
+RestBeyondFrames found_in(const MeshSequence& sequence, const Context& context = {}) {
+  return rest_beyond_frames(std::make_shared<const MeshSequence>(sequence), context);
 }
 
 TEST(RestBeyondFrames, IsTheDistanceFromTheNearestMixtureOfEveryOther) {
@@ -137,10 +137,10 @@ TEST(RestBeyondFrames, OfFewFramesTellsNothing) {
 
 TEST(RestBeyondFrames, IsTheSameForEveryNumberOfThreadsAndRanks) {
   const MeshSequence sequence = bumpy_take(offset_everywhere(0.1));
-  const RestBeyondFrames one = found_in(sequence, {.threads = 1});
-  EXPECT_EQ(found_in(sequence, {.threads = 3}).of_rest, one.of_rest);
+  const RestBeyondFrames one = found_in(sequence, Context().with_threads(1));
+  EXPECT_EQ(found_in(sequence, Context().with_threads(3)).of_rest, one.of_rest);
   test::on_ranks(3, [&](const Ranks& ranks) {
-    const RestBeyondFrames found = found_in(sequence, {.threads = 1, .ranks = &ranks});
+    const RestBeyondFrames found = found_in(sequence, Context().with_threads(1).with_ranks(ranks));
     EXPECT_EQ(found.of_rest, one.of_rest);
     EXPECT_EQ(found.least, one.least);
   });

@@ -283,15 +283,16 @@ TEST(Simplification, KeepsGroupsBeforeTheirFaces) {
 
 TEST(Simplification, IsTheSameForEveryNumberOfThreads) {
   const MeshSequence tongue = rolling();
-  const Simplification one = simplify(tongue, {.share = 0.3, .threads = 1});
-  const Simplification three = simplify(tongue, {.share = 0.3, .threads = 3});
+  const Simplification one = simplify(tongue, {.share = 0.3}, Context().with_threads(1));
+  const Simplification three = simplify(tongue, {.share = 0.3}, Context().with_threads(3));
   EXPECT_EQ(one.vertices, three.vertices);
   EXPECT_EQ(one.connectivity->triangles, three.connectivity->triangles);
 }
 
 TEST(Simplification, CanBeCancelledAndRefusesShares) {
   const MeshSequence tongue = rolling();
-  EXPECT_THROW(simplify(tongue, {.progress = [](double) { return false; }}), Cancelled);
+  const Context cancelled = Context().with_progress([](double) { return false; });
+  EXPECT_THROW(simplify(tongue, {}, cancelled), Cancelled);
   EXPECT_THROW(simplify(tongue, {.share = 0}), std::invalid_argument);
   EXPECT_THROW(simplify(tongue, {.share = 1.5}), std::invalid_argument);
 }

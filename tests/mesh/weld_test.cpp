@@ -65,7 +65,8 @@ TEST(PartingVertices, AreTheWeldedOnesThatLeaveTheirRepresentative) {
   EXPECT_THAT(parting_vertices(seam_that_opens(0.25), weld, 0.25), IsEmpty());
   const test::Stream stream(seam_that_opens(0.5));
   for (const int threads : {1, 3}) {
-    EXPECT_THAT(parting_vertices(stream, weld, 0.25, {.threads = threads}), ElementsAre(3));
+    EXPECT_THAT(parting_vertices(stream, weld, 0.25, Context().with_threads(threads)),
+                ElementsAre(3));
   }
 }
 
@@ -137,12 +138,11 @@ TEST(StayingTogether, ReportsGrowingProgressAndStopsWhenAsked) {
     shares.push_back(share);
     return true;
   };
-  staying_together(sequence, weld, 0, {.progress = keep});
+  staying_together(sequence, weld, 0, Context().with_progress(keep));
   EXPECT_TRUE(std::ranges::is_sorted(shares));
   EXPECT_LT(shares.back(), 1);
-  EXPECT_THROW(
-      staying_together(sequence, weld, 0, {.progress = [](double share) { return share < 0.6; }}),
-      Cancelled);
+  const Context stopping = Context().with_progress([](double share) { return share < 0.6; });
+  EXPECT_THROW(staying_together(sequence, weld, 0, stopping), Cancelled);
 }
 
 class WeldCheck : public testing::Test {

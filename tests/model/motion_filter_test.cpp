@@ -112,7 +112,7 @@ TEST(MotionFilter, LeavesOneOrTwoFramesAndNoSmoothnessAsTheyAre) {
 TEST(MotionFilter, GivesTheSameBytesForAnyThreads) {
   const Frames x = noise(33, 211);
   const MotionFilter filter(whole_seconds(33), 2);
-  EXPECT_EQ(filter(x, {.threads = 1}), filter(x, {.threads = 3}));
+  EXPECT_EQ(filter(x, Context().with_threads(1)), filter(x, Context().with_threads(3)));
 }
 
 TEST(MotionFilter, KeepsEqualMotionsEqualBitByBit) {

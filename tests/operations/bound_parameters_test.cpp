@@ -69,8 +69,9 @@ BoundParameters<BasketOptions> basket_parameters(const BasketOptions& defaults =
       .add("fruit", BasketOptions::kFruit, "which")
       .add("size", BasketOptions::kSize, "of the basket")
       .add("days", BasketOptions::kDays, "when")
-      .add_word_or_file<Produce, std::string>("label", BasketOptions::kLabel, "on it",
-                                              [](const std::string& path) { return "at " + path; })
+      .add_word_or_file<Produce, std::string>(
+          "label", BasketOptions::kLabel, "on it",
+          [](const std::string& path, const FieldSequence*) { return "at " + path; })
       .add("owner", BasketOptions::kOwner, "of it")
       .add("lids", BasketOptions::kLids, "of it")
       .add("list", BasketOptions::kList, "what to buy")
@@ -259,20 +260,19 @@ TEST(PipelineParameters, HaveTheDefaultsOfTheApi) {
   const Parameters values(transfer_declares());
   const AnalysisOptions analysis = analysis_parameters().read(values);
   EXPECT_EQ(analysis.d_min.value, AnalysisOptions{}.d_min.value);
-  EXPECT_EQ(analysis.decomposition.rho, DecompositionOptions{}.rho);
-  EXPECT_EQ(analysis.decomposition.nonnegative, DecompositionOptions{}.nonnegative);
-  EXPECT_EQ(count_parameters().read(values).decomposition.count,
-            AnalysisOptions{}.decomposition.count);
-  const SolveOptions solving = solving_parameters().read(values);
-  EXPECT_EQ(solving.vertex.outside_weight, VertexTransferOptions{}.outside_weight);
-  EXPECT_FALSE(solving.vertex.anchor);
+  EXPECT_EQ(analysis.rho, DecompositionOptions{}.rho);
+  EXPECT_EQ(analysis.nonnegative, DecompositionOptions{}.nonnegative);
+  EXPECT_EQ(count_parameters().read(values).count, AnalysisOptions{}.count);
+  const SolveOptions solve = solving_parameters().read(values);
+  EXPECT_EQ(solve.outside_weight, VertexTransferOptions{}.outside_weight);
+  EXPECT_FALSE(solve.anchor);
 }
 
 TEST(PipelineParameters, TakeAnAnchorByNameOrNumber) {
   Parameters values(solving_parameters().declared());
   const auto anchor = [&](const std::string& text) {
     values.set("anchor", text);
-    return solving_parameters().read(values).vertex;
+    return solving_parameters().read(values);
   };
   EXPECT_EQ(anchor("source").anchor, Anchor::source_motion);
   EXPECT_EQ(anchor("centroid").anchor, Anchor::centroid);
@@ -310,11 +310,11 @@ TEST(CommandTerms, AreAddedToNotes) {
   Invocation call;
   call.log = [&warnings](LogLevel, const std::string& text) { warnings.push_back(text); };
   const std::string unknown = "take: its neutral is not known";
-  note(warnings_of(call), unknown, Topic::unknown_neutral);
-  note(warnings_of(call), "plain");
+  with_notes_as_warnings(call).note(unknown, Topic::unknown_neutral);
+  with_notes_as_warnings(call).note("plain");
   // By the option that the operation has.
   call.parameters = Parameters(source_rest_parameters().declared());
-  note(warnings_of(call), unknown, Topic::unknown_neutral);
+  with_notes_as_warnings(call).note(unknown, Topic::unknown_neutral);
   EXPECT_THAT(warnings, ElementsAre(unknown + "; give it with --rest FILE", "plain",
                                     unknown + "; give it with --source-rest FILE"));
 }

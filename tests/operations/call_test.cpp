@@ -247,10 +247,10 @@ TEST_F(CallOfAnOperation, ReportsProgressFromNothingToAll) {
   std::vector<double> shares;
   CallRequest align = align_of(turning_grid());
   align.destinations["out"] = {at("still.npy")};
-  align.progress = [&shares](double share) {
+  align.context = Context().with_progress([&shares](double share) {
     shares.push_back(share);
     return true;
-  };
+  });
   run(align);
   EXPECT_TRUE(std::ranges::is_sorted(shares));
   EXPECT_GE(shares.front(), 0);

@@ -31,10 +31,10 @@ const OperationTable& toolkit_table() {
 /// Of regions, read and written.
 Format format_of(const std::string& extension) {
   Format format{.name = "mine", .kind = DataKind::regions, .extensions = {extension}};
-  format.read = [](const std::string& text, const ReadRequest&) -> ReadValue {
+  format.read = [](const std::string& text, const ReadRequest&, const Context&) -> ReadValue {
     return {{text, RegionData()}};
   };
-  format.write = [](const Data&, const WriteRequest&) {
+  format.write = [](const Data&, const WriteRequest&, const Context&) {
     return std::vector<std::filesystem::path>();
   };
   return format;
@@ -48,12 +48,12 @@ TEST(FormatTable, WritesNoWeightsThatWouldBeReadAsTimes) {
     const Format& format = table.writer({"weights", DataKind::table, ""}, target);
     const Table timed{{"time", "jawOpen", "Time_ms"}, {{0, 0.5, 1}}};
     const Parameters parameters(format.writing);
-    EXPECT_THAT([&] { format.write(timed, {.target = target, .parameters = parameters}); },
+    EXPECT_THAT([&] { format.write(timed, {.target = target, .parameters = parameters}, {}); },
                 ThrowsMessage<MismatchError>(HasSubstr("an expression is called 'Time_ms'")));
     EXPECT_FALSE(std::filesystem::exists(target));
     for (const char* name : {"Frame", "frame_index", "Timecode", "BlendShapeCount", "timestamp"}) {
       const Table numbered{{"time", "jawOpen", name}, {{0, 0.5, 1}}};
-      EXPECT_THROW(format.write(numbered, {.target = target, .parameters = parameters}),
+      EXPECT_THROW(format.write(numbered, {.target = target, .parameters = parameters}, {}),
                    MismatchError)
           << name;
     }

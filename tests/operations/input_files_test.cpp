@@ -32,7 +32,7 @@ class InputFiles : public testing::Test {
         files.push_back(folder_ / (ranks.rank() == 0 ? "own" : "other") / name);
       }
       try {
-        check_same_inputs(files, ranks);
+        check_same_inputs(files, Context().with_ranks(ranks));
       } catch (const MismatchError& error) {
         EXPECT_EQ(ranks.rank(), 1);
         said = error.what();

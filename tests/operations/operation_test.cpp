@@ -58,7 +58,7 @@ TEST(OperationTable, RefusesAParameterThatMeansTwoThings) {
   format.kind = DataKind::components;
   format.extensions = {".x"};
   format.writing = {{"rho", ParameterKind::text, {}, "another rho"}};
-  format.write = [](const Data&, const WriteRequest&) {
+  format.write = [](const Data&, const WriteRequest&, const Context&) {
     return std::vector<std::filesystem::path>();
   };
   EXPECT_THAT([&] { table.add(format); },
@@ -216,7 +216,7 @@ TEST(Operations, ReadARegionSetForASequenceThatTheCallerHas) {
   const Invocation call = transfer_of_the_grid(table);
   const LoadedInputs loaded =
       load_inputs(table, *table.find("transfer"), call.parameters,
-                  {{"regions", {(folder / "list.txt").string()}}}, {}, {}, 0, call.inputs);
+                  {{"regions", {(folder / "list.txt").string()}}}, {}, call.inputs);
   EXPECT_EQ(loaded.data.at("source").front().name, "source");
   const auto& regions = std::get<RegionData>(loaded.data.at("regions").front().data).regions;
   EXPECT_EQ(regions.vertices, 49);

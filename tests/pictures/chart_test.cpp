@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/option_ranges.h"
 #include "tests/temporary_folder.h"
 #include "toolkit/drawing/chart.h"
 #include "toolkit/drawing/picture.h"
@@ -130,6 +131,7 @@ std::string refusal(const std::vector<Chart>& row, const ChartSize& size = {}) {
 
 TEST(Chart, NamesWhatItCannotShow) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
+  test::expect_ranges<ChartSize>();
   EXPECT_THAT(refusal({}), HasSubstr("needs a chart"));
   EXPECT_THAT(refusal({Chart{"empty", {}, {}, {}}}), HasSubstr("chart 'empty' has no points"));
   EXPECT_THAT(refusal({chart_of({1, 2}, {1}, ChartScale::linear)}),

@@ -190,9 +190,7 @@ TEST(Picture, IsTheSameInASessionWhateverWasDrawnBefore) {
       EXPECT_EQ(together[i].width, alone[i].width) << i;
       EXPECT_TRUE(together[i].pixels == alone[i].pixels) << i;
     }
-    DrawOptions cancelling;
-    cancelling.progress = [](double) { return false; };
-    EXPECT_THROW(draw(large, cancelling), Cancelled);
+    EXPECT_THROW(draw(large, Context().with_progress([](double) { return false; })), Cancelled);
   }
   EXPECT_TRUE(draw(large).pixels == alone[0].pixels);
 }

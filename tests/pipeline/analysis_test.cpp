@@ -20,7 +20,7 @@ Source source_of(const MeshSequence& sequence) {
 }
 
 AnalysisOptions three_components() {
-  return {.decomposition = {.count = 3}};
+  return {.count = 3};
 }
 
 TEST(Analysis, IsTheDecompositionFromTheRestPoseOfTheSource) {
@@ -57,9 +57,8 @@ TEST(Analysis, NotesSeamsThatRoundingOpened) {
   const auto notes_of = [](const Positions& positions, const Triangles& triangles,
                            Welding welding) {
     std::vector<std::string> said;
-    distances_along(positions, triangles, {.welding = welding, .notes = [&said](const Note& n) {
-                                             said.push_back(n.text);
-                                           }});
+    const auto keep = [&said](const Note& note) { said.push_back(note.text); };
+    distances_along(positions, triangles, {.welding = welding}, Context().with_notes(keep));
     return said;
   };
   Positions rest = halves.positions;
@@ -92,7 +91,6 @@ TEST(Analysis, MeasuresAsTheReferenceDoesWhereItIsToBeCompatible) {
   }
   AnalysisOptions options = three_components();
   options.compatibility = Compatibility::splocs2013;
-  options.decomposition.tolerance = 1;
   const Components components = analyse(source_of(sequence), options).components;
   EXPECT_EQ(components.d_max, 0.7 * largest);
   EXPECT_EQ(components.energies.size(), 10U);
@@ -100,12 +98,15 @@ TEST(Analysis, MeasuresAsTheReferenceDoesWhereItIsToBeCompatible) {
   EXPECT_EQ(components.options.sign_rule, SignRule::literal);
   EXPECT_EQ(components.options.scale, MotionScale::standard_deviation);
   EXPECT_TRUE(components.rest == sequence.frame(0));
+  options.tolerance = 1;
+  EXPECT_THAT([&] { analyse(source_of(sequence), options); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("tolerance: ")));
 }
 
 TEST(Analysis, RunsAsManyIterationsAsAreAskedForWithTheReferenceToo) {
   AnalysisOptions options = three_components();
   options.compatibility = Compatibility::splocs2013;
-  options.decomposition.iterations = 4;
+  options.iterations = 4;
   EXPECT_EQ(analyse(source_of(take()), options).components.energies.size(), 4U);
 }
 
@@ -121,7 +122,7 @@ TEST(Analysis, MeasuresTheReferencesUnitBeforeHeadMotionIsTakenOut) {
 
 TEST(Analysis, RefusesMoreComponentsThanVertices) {
   AnalysisOptions options;
-  options.decomposition.count = 82;
+  options.count = 82;
   const auto work = [&] { analyse(source_of(take()), options); };
   EXPECT_EQ(test::topic_of(work), Topic::component_count);
   EXPECT_THAT(work, ThrowsMessage<MismatchError>("82 components asked for, the mesh has 81 "
@@ -173,12 +174,12 @@ MeshSequence parting() {
 
 TEST(Analysis, NotesVerticesThatAreWeldedAndPart) {
   Noted noted;
-  AnalysisOptions options{.decomposition = {.count = 1}, .notes = noted.sink()};
-  analyse(source_of(parting()), options);
+  AnalysisOptions options{.count = 1};
+  analyse(source_of(parting()), options, noted.context());
   EXPECT_TRUE(noted.has(Topic::parting_vertices));
   noted.notes.clear();
   options.distances.welding = Welding::none;
-  analyse(source_of(parting()), options);
+  analyse(source_of(parting()), options, noted.context());
   EXPECT_FALSE(noted.has(Topic::parting_vertices));
 }
 
@@ -188,7 +189,7 @@ TEST(DistancesAlong, NoteWhatIsLeftOut) {
   Triangles triangles(2, 3);
   triangles << 0, 1, 2, 0, 0, 1;
   Noted noted;
-  distances_along(rest, triangles, {.notes = noted.sink()});
+  distances_along(rest, triangles, {}, noted.context());
   ASSERT_EQ(noted.notes.size(), 2U);
   EXPECT_THAT(noted.notes[0].text, HasSubstr("1 triangles without area"));
   EXPECT_THAT(noted.notes[1].text, HasSubstr("the first is vertex 3"));

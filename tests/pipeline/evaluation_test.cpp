@@ -39,7 +39,7 @@ TEST_F(EvaluationTest, HasARowForEachCountAndOneByAllTriangles) {
 
 TEST_F(EvaluationTest, IsTheErrorOfTheTransferByTheSameRegions) {
   const auto rows = evaluate(source_, {"actor", actor_}, options_);
-  TransferOptions options{.analysis = {.decomposition = {.count = 2}}, .regions = options_.regions};
+  TransferOptions options{.analysis = {.count = 2}, .regions = options_.regions};
   const TransferResult by_two = transfer(source_, {{"actor", actor_}}, options);
   EXPECT_EQ(rows[0].de_all, by_two.targets[0].error.de_all);
   EXPECT_EQ(rows[0].de_region, by_two.targets[0].error.de_region);
@@ -51,9 +51,9 @@ TEST_F(EvaluationTest, IsTheErrorOfTheTransferByTheSameRegions) {
 
 TEST_F(EvaluationTest, CompletesRegionsThatLeaveExpressionsUnseen) {
   options_.counts = {1};
-  options_.regions = {.radius = Length::share(0.05), .completion = {.limit = 1}};
+  options_.regions = {.radius = Length::share(0.05), .complete_limit = 1};
   const auto completed = evaluate(source_, {"actor", actor_}, options_);
-  options_.regions.completion.share = 0;
+  options_.regions.complete = 0;
   const auto as_found = evaluate(source_, {"actor", actor_}, options_);
   EXPECT_GT(completed[0].triangles, as_found[0].triangles);
   EXPECT_GT(*completed[0].mpe_all, *as_found[0].mpe_all);
@@ -61,18 +61,17 @@ TEST_F(EvaluationTest, CompletesRegionsThatLeaveExpressionsUnseen) {
 
 TEST_F(EvaluationTest, SaysWhichRowsMayNotBeUsable) {
   test::Noted noted;
-  options_.notes = noted.sink();
   const auto said = [&noted] {
     std::string text;
     for (const Note& note : noted.notes) text += note.text + '\n';
     return text;
   };
   const BlendshapeModel same = test::model_on(test::patch(), 5);
-  evaluate(source_, {"same", same}, options_);
+  evaluate(source_, {"same", same}, options_, noted.context());
   EXPECT_EQ(said().find("may not be usable"), std::string::npos) << said();
   // One expression tells little of what the source does.
   const BlendshapeModel poor = test::model_on(test::bent_patch(), 1);
-  evaluate(source_, {"actor", poor}, options_);
+  evaluate(source_, {"actor", poor}, options_, noted.context());
   EXPECT_THAT(said(), HasSubstr("actor: rows of which the result may not be usable: K = 2: "));
   EXPECT_THAT(said(), HasSubstr("; 100.0 % of the triangles: "));
 }

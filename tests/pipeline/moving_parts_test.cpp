@@ -76,9 +76,7 @@ TEST(MovingParts, AreMeasuredByWhatMovesInASmallSection) {
   EXPECT_EQ(parts_of(large).diameter, large.diameter());
   for (const MeshSequence* sequence : {&small, &large}) {
     Noted noted;
-    AnalysisOptions options{.decomposition = {.count = 2}};
-    options.notes = noted.sink();
-    const Analysis analysis = analyse(still(*sequence), options);
+    const Analysis analysis = analyse(still(*sequence), {.count = 2}, noted.context());
     EXPECT_EQ(analysis.size, parts_of(*sequence).diameter);
     const bool is_noted = std::ranges::any_of(noted.notes, [](const Note& note) {
       return note.text.starts_with("a small section of a connected part moves");
@@ -95,7 +93,7 @@ TEST(MovingParts, AreAllWhereNothingMoves) {
 TEST(MovingParts, GiveTheRegionsThatAreThereWithoutAStillBody) {
   const MeshSequence alone = take(), beside = with_still_body(alone);
   const auto regions_of = [](const MeshSequence& sequence) {
-    return choose_regions(analyse(still(sequence), {.decomposition = {.count = 5}}));
+    return choose_regions(analyse(still(sequence), {.count = 5}));
   };
   const Regions expected = regions_of(alone), found = regions_of(beside);
   ASSERT_EQ(found.regions.size(), expected.regions.size());

@@ -20,8 +20,9 @@ class PairedTargetTest : public testing::Test {
   const BlendshapeModel actor_ = test::model_on(test::bent_patch(), 5);
   const Correspondence same_ = Correspondence::identity(128);
 
-  TransferredTarget transferred(const Target& target, const TransferOptions& options) const {
-    return std::move(transfer(take_, {target}, options).targets.front());
+  TransferredTarget transferred(const Target& target, const TransferOptions& options,
+                                const Context& context = {}) const {
+    return std::move(transfer(take_, {target}, options, context).targets.front());
   }
 };
 
@@ -29,8 +30,8 @@ TEST_F(PairedTargetTest, IdentityGivesEqualBytes) {
   for (const Space space : {Space::blendshape, Space::vertex}) {
     for (const bool full : {true, false}) {
       TransferOptions options{.full = full};
-      options.analysis.decomposition.count = 3;
-      options.solving.space = space;
+      options.analysis.count = 3;
+      options.solve.space = space;
       const TransferredTarget plain = transferred({"actor", actor_}, options);
       const TransferredTarget by_pairs = transferred({"actor", actor_, same_}, options);
       EXPECT_TRUE(test::frames_of(by_pairs.solution.sequence) ==
@@ -85,15 +86,14 @@ class FinerTargetTest : public PairedTargetTest {
 };
 
 TEST_F(FinerTargetTest, IsPairedByMarkersThatAreGivenOrLookedForAndFollows) {
-  const MarkersBetween search = [this](const TriMesh& source) {
+  const MarkersBetween search = [this](const TriMesh& source, const Context&) {
     EXPECT_TRUE(source.positions == take_.rest());
     AutomaticMarkers found;
     found.markers = markers_;
     return found;
   };
   Noted noted;
-  const auto looked_for =
-      transferred({"fine", *mesh_, search}, {.full = true, .notes = noted.sink()});
+  const auto looked_for = transferred({"fine", *mesh_, search}, {.full = true}, noted.context());
   const auto given = transferred({"fine", *mesh_, markers_}, {.full = true});
   ASSERT_TRUE(given.match);
   EXPECT_EQ(given.match->quality.verdict(), "good");
@@ -116,7 +116,7 @@ TEST_F(FinerTargetTest, IsPairedByMarkersThatAreGivenOrLookedForAndFollows) {
 }
 
 TEST_F(PairedTargetTest, NeedsNoMarkersWhereFacesAreTheSame) {
-  const MarkersBetween search = [](const TriMesh&) -> AutomaticMarkers {
+  const MarkersBetween search = [](const TriMesh&, const Context&) -> AutomaticMarkers {
     throw std::logic_error("nothing is to be looked for");
   };
   const auto plain = transferred({"actor", actor_}, {.full = true});
@@ -148,11 +148,11 @@ TEST_F(FinerTargetTest, HasNoAnchorOnAPartThatFollows) {
   const BlendshapeModel with_tooth(test::connectivity_of(shape), shape.positions,
                                    ShapeBasis{{}, Eigen::MatrixXd(shape.positions.size(), 0)});
   TransferOptions options{.full = true};
-  options.solving.vertex.anchor = Anchor::vertex;
-  options.solving.vertex.anchor_vertex = first;
+  options.solve.anchor = Anchor::vertex;
+  options.solve.anchor_vertex = first;
   const auto work = [&] { transferred({"fine", with_tooth, markers_}, options); };
   EXPECT_EQ(test::topic_of(work), Topic::anchor_vertex);
-  options.solving.vertex.anchor_vertex = 40;
+  options.solve.anchor_vertex = 40;
   const auto held = transferred({"fine", with_tooth, markers_}, options);
   const Frames pose = held.solution.sequence->read(5, 1);
   EXPECT_LT(
@@ -166,7 +166,7 @@ TEST_F(FinerTargetTest, IsRefusedWithoutMatchAndWhereNoMarkersAreFound) {
               transferred({"fine", *mesh_}, {.full = true});
             }),
             Topic::other_faces);
-  const MarkersBetween search = [](const TriMesh&) -> AutomaticMarkers {
+  const MarkersBetween search = [](const TriMesh&, const Context&) -> AutomaticMarkers {
     throw MismatchError("fine.obj: no face was found");
   };
   const auto work = [&] { transferred({"fine", *mesh_, search}, {.full = true}); };
@@ -212,8 +212,7 @@ TEST_F(FinerTargetTest, FollowsAlikeWhereItIsInsideOut) {
       mesh_->neutral(), ShapeBasis{{}, Eigen::MatrixXd(3 * 289, 0)});
   Noted noted;
   const auto upright = transferred({"fine", *mesh_, markers_}, {.full = true});
-  const auto inside_out =
-      transferred({"fine", turned, markers_}, {.full = true, .notes = noted.sink()});
+  const auto inside_out = transferred({"fine", turned, markers_}, {.full = true}, noted.context());
   ASSERT_EQ(noted.notes.size(), 1u);
   EXPECT_THAT(noted.notes.front().text, HasSubstr("inside out"));
   // Sums over a triangle's corners in another order: rounding.
@@ -231,7 +230,7 @@ TEST_F(FinerTargetTest, IsToldOfExchangedMarkersWithTheirPlaces) {
     target.marker_places.push_back("m.txt, line " + std::to_string(i));
   }
   Noted noted;
-  const MatchedTarget matched(take_, target, {.notes = noted.sink()});
+  const MatchedTarget matched(take_, target, {}, noted.context());
   EXPECT_THAT(noted.notes.front().text, HasSubstr("fine: m.txt, line 3 (vertices 9 and 44) and "
                                                   "m.txt, line 5 (vertices 44 and 9) are likely "
                                                   "exchanged"));
@@ -241,7 +240,7 @@ TEST_F(PairedTargetTest, NotesAPoorCorrespondence) {
   Correspondence far = same_;
   far.residuals.setConstant(5);
   Noted noted;
-  const MatchedTarget matched(take_, {"actor", actor_, far}, {.notes = noted.sink()});
+  const MatchedTarget matched(take_, {"actor", actor_, far}, {}, noted.context());
   EXPECT_TRUE(noted.has(Topic::poor_match));
 }
 
@@ -265,12 +264,11 @@ TEST_F(PairedTargetTest, FacesInAnotherOrderOrWoundTheOtherWayAreTheSame) {
       actor_.neutral(), actor_.expressions());
   for (const Space space : {Space::blendshape, Space::vertex}) {
     TransferOptions options;
-    options.analysis.decomposition.count = 3;
-    options.solving.space = space;
+    options.analysis.count = 3;
+    options.solve.space = space;
     const TransferredTarget plain = transferred({"actor", actor_}, options);
     Noted noted;
-    options.notes = noted.sink();
-    const TransferredTarget same = transferred({"actor", other}, options);
+    const TransferredTarget same = transferred({"actor", other}, options, noted.context());
     EXPECT_LT((test::frames_of(same.solution.sequence) - test::frames_of(plain.solution.sequence))
                   .cwiseAbs()
                   .maxCoeff(),

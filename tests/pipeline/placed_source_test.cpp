@@ -107,11 +107,10 @@ TEST_F(PlacedSourceTest, FollowsItsUnitPlaceAndAxesInBothSpaces) {
 TEST_F(PlacedSourceTest, ThatIsTheMirrorImageMovesMirrored) {
   const Stand mirror{1, Eigen::Vector3d(-1, 1, 1).asDiagonal(), {0, 0, 0}};
   test::Noted noted;
-  options_.notes = noted.sink();
   const MeshSequence source = mirror.of(take());
   // The mirror image has the same faces, which look inwards now.
   const auto onto = [&](const BlendshapeModel& target, const MeshSequence& performance) {
-    return transfer(performance, {{"actor", target}}, options_).targets.front();
+    return transfer(performance, {{"actor", target}}, options_, noted.context()).targets.front();
   };
   const BlendshapeModel self = test::model_on(test::patch(), 5);
   const TransferredTarget result = onto(self, source);
@@ -123,7 +122,7 @@ TEST_F(PlacedSourceTest, ThatIsTheMirrorImageMovesMirrored) {
 }
 
 TEST_F(PlacedSourceTest, WithoutAxesKeepsTheGradientsOfThePaper) {
-  options_.solving.axes = Axes::none;
+  options_.solve.axes = Axes::none;
   const MeshSequence source = take();
   const TransferredTarget result = transfer(source, {{"actor", actor_}}, options_).targets.front();
   EXPECT_EQ(result.similarity.angle(), 0);

@@ -38,9 +38,8 @@ class DealtTransfer : public testing::Test {
  protected:
   const MeshSequence source_ = take(kFrames);
   const BlendshapeModel actor_ = model_on(bent_patch(), 5);
-  TransferOptions options_{.analysis = {.decomposition = {.count = 4}},
-                           .regions = {.radius = Length::share(0.3)},
-                           .threads = 2};
+  TransferOptions options_{.analysis = {.count = 4}, .regions = {.radius = Length::share(0.3)}};
+  const Context context_ = Context().with_threads(2);
 
   static void expect_equal(const TransferResult& found, const TransferResult& expected) {
     const TransferredTarget& one = found.targets.front();
@@ -59,13 +58,11 @@ class DealtTransfer : public testing::Test {
   void expect_same_on_ranks(const MeshSequence& source,
                             const std::vector<int>& numbers_of_ranks = {3}) const {
     const std::vector<Target> targets = {{"actor", actor_}};
-    const TransferResult alone = transfer(Watched(source), targets, options_);
+    const TransferResult alone = transfer(Watched(source), targets, options_, context_);
     for (const int ranks : numbers_of_ranks) {
       on_ranks(ranks, [&](const Ranks& rank) {
-        TransferOptions options = options_;
-        options.ranks = &rank;
         const Watched watched(source);
-        expect_equal(transfer(watched, targets, options), alone);
+        expect_equal(transfer(watched, targets, options_, context_.with_ranks(rank)), alone);
         EXPECT_LT(watched.frames_seen(), kFrames) << rank.rank() << " of " << ranks;
       });
     }
@@ -77,17 +74,17 @@ TEST_F(DealtTransfer, FindsTheSameWeights) {
 }
 
 TEST_F(DealtTransfer, FindsTheSameSmoothWeights) {
-  options_.solving.smoothness = 0.05;
+  options_.solve.smoothness = 0.05;
   expect_same_on_ranks(source_);
 }
 
 TEST_F(DealtTransfer, FindsTheSameWeightsOfEachRegion) {
-  options_.solving.per_region = true;
+  options_.solve.per_region = true;
   expect_same_on_ranks(source_);
 }
 
 TEST_F(DealtTransfer, FindsTheSamePositions) {
-  options_.solving.space = Space::vertex;
+  options_.solve.space = Space::vertex;
   expect_same_on_ranks(source_);
 }
 
@@ -104,12 +101,11 @@ TEST(DealtEvaluation, FindsTheSameRows) {
   const MeshSequence source = take(kFrames);
   const BlendshapeModel actor = model_on(bent_patch(), 5);
   const Target target = {"actor", actor};
-  EvaluationOptions options{.counts = {2, 4}, .regions = {.radius = Length::share(0.3)}};
+  const EvaluationOptions options{.counts = {2, 4}, .regions = {.radius = Length::share(0.3)}};
   const std::vector<EvaluationRow> alone = evaluate(source, target, options);
   on_ranks(3, [&](const Ranks& rank) {
-    EvaluationOptions of_rank = options;
-    of_rank.ranks = &rank;
-    const std::vector<EvaluationRow> rows = evaluate(source, target, of_rank);
+    const std::vector<EvaluationRow> rows =
+        evaluate(source, target, options, Context().with_ranks(rank));
     ASSERT_EQ(rows.size(), alone.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
       EXPECT_EQ(rows[i].de_all, alone[i].de_all);

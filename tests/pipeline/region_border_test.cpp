@@ -119,7 +119,7 @@ TEST_F(RegionBorder, IsOneWeightAtAWeldedPlace) {
   EXPECT_EQ(joined.weights[9], 0.25);
   EXPECT_EQ(joined.weights.sum(), 0.5);
   EXPECT_TRUE(joined.inside[9]);
-  options.distances.welding = Welding::none;
+  options.distances = DistanceOptions{.welding = Welding::none};
   EXPECT_EQ(bordered_selection(painted, {"halves", model}, options).weights.sum(), 0.25);
 }
 
@@ -133,11 +133,11 @@ TEST_F(RegionBorder, IsInTheResultOfATransfer) {
   EXPECT_EQ(painted.regions->regions.size(), 1U);  // no disc completes it
 
   options.given = GivenRegions{"list", hard_};
-  options.regions.completion.share = 0;
+  options.regions.complete = 0;
   EXPECT_EQ(transfer(take_, {{"actor", actor_}}, options).targets[0].weights.size(), 0);
-  options.solving.falloff = Length::share(0.2);
+  options.solve.falloff = Length::share(0.2);
   const TransferResult faded = transfer(take_, {{"actor", actor_}, {"same", actor_}}, options);
-  EXPECT_TRUE(faded.targets[0].weights == selected(hard_, options.solving).weights);
+  EXPECT_TRUE(faded.targets[0].weights == selected(hard_, options.solve).weights);
   EXPECT_TRUE(faded.targets[0].weights == faded.targets[1].weights);
   // Those of several targets need not be one.
   EXPECT_EQ(faded.regions->weights.size(), 0);
@@ -147,16 +147,16 @@ TEST_F(RegionBorder, IsInTheResultOfATransfer) {
 
 TEST_F(RegionBorder, IsRefusedWhereNothingCouldFollowIt) {
   TransferOptions options{.full = true};
-  options.solving.falloff = Length::share(0.2);
+  options.solve.falloff = Length::share(0.2);
   const auto message = [&] { transfer(take_, {{"actor", actor_}}, options); };
   EXPECT_THAT(message, ThrowsMessage<std::invalid_argument>(HasSubstr("falloff: a full transfer")));
   options = {};
   options.given = GivenRegions{"painting", painted_};
-  options.solving.per_region = true;
+  options.solve.per_region = true;
   EXPECT_THAT(message, ThrowsMessage<std::invalid_argument>(
                            HasSubstr("per_region: painting says how much")));
   EvaluationOptions of_rows{.given = GivenRegions{"painting", painted_}};
-  of_rows.solving.per_region = true;
+  of_rows.solve.per_region = true;
   EXPECT_THAT(
       [&] {
         evaluate(take_, {"actor", actor_}, of_rows);
@@ -173,7 +173,7 @@ TEST_F(RegionBorder, IsRefusedBeforeAnythingIsComputed) {
               ThrowsMessage<OptionError>(HasSubstr("half: no vertex has the weight 1")));
   EXPECT_EQ(test::topic_of([&] { check_border(&given, actor, options); }), Topic::no_full_weight);
   EXPECT_NO_THROW(check_border(nullptr, actor, options));
-  options.vertex.outside = Outside::identity;
+  options.outside = Outside::identity;
   EXPECT_NO_THROW(check_border(nullptr, actor, options));
   options.space = Space::vertex;
   EXPECT_EQ(test::topic_of([&] { check_border(nullptr, actor, options); }), Topic::soft_outside);
@@ -182,14 +182,14 @@ TEST_F(RegionBorder, IsRefusedBeforeAnythingIsComputed) {
   EXPECT_EQ(test::topic_of([&] { check_border(&given, actor, options); }), Topic::soft_outside);
 
   // Nothing is asked of the sequence.
-  const auto stopped = [](double) -> bool { throw std::logic_error("something was computed"); };
-  TransferOptions of_transfer{.progress = stopped};
-  of_transfer.solving = options;
-  of_transfer.solving.falloff = Length::share(0.2);
-  EXPECT_EQ(test::topic_of([&] { transfer(take_, {actor}, of_transfer); }), Topic::soft_outside);
-  EvaluationOptions of_rows{.progress = stopped};
-  of_rows.solving = of_transfer.solving;
-  EXPECT_EQ(test::topic_of([&] { evaluate(take_, actor, of_rows); }), Topic::soft_outside);
+  const Context stopped = Context().with_progress(
+      [](double) -> bool { throw std::logic_error("something was computed"); });
+  TransferOptions of_transfer{.solve = options};
+  of_transfer.solve.falloff = Length::share(0.2);
+  EXPECT_EQ(test::topic_of([&] { transfer(take_, {actor}, of_transfer, stopped); }),
+            Topic::soft_outside);
+  const EvaluationOptions of_rows{.solve = of_transfer.solve};
+  EXPECT_EQ(test::topic_of([&] { evaluate(take_, actor, of_rows, stopped); }), Topic::soft_outside);
 }
 
 TEST_F(RegionBorder, IsEvaluatedInARowOfItsOwn) {
@@ -201,10 +201,10 @@ TEST_F(RegionBorder, IsEvaluatedInARowOfItsOwn) {
   EXPECT_EQ(rows[0].triangles, static_cast<int>(painted_.triangles.size()));
   EXPECT_EQ(rows[1].triangle_share, 1);
   EvaluationOptions hard{.given = GivenRegions{"list", hard_}};
-  hard.regions.completion.share = 0;
+  hard.regions.complete = 0;
   const int of_hard = evaluate(take_, {"actor", actor_}, hard)[0].triangles;
   EXPECT_EQ(of_hard, static_cast<int>(hard_.triangles.size()));
-  hard.solving.falloff = Length::share(0.2);
+  hard.solve.falloff = Length::share(0.2);
   EXPECT_GT(evaluate(take_, {"actor", actor_}, hard)[0].triangles, of_hard);
 }
 

@@ -28,7 +28,7 @@ std::vector<bool> first_half() {
 }
 
 AnalysisOptions in_first_half() {
-  return {.inside = first_half(), .decomposition = {.count = 3}};
+  return {.count = 3, .inside = first_half()};
 }
 
 TEST(RegionPlace, HoldsAllCentresDisplacementsAndRegions) {
@@ -55,7 +55,7 @@ TEST(RegionPlace, IsNotTouchedByWhatMovesOutside) {
 
 TEST(RegionPlace, IsEverywhereWhereItHoldsAllVertices) {
   const MeshSequence sequence = take();
-  AnalysisOptions options{.decomposition = {.count = 3}};
+  AnalysisOptions options{.count = 3};
   const Components expected = analyse(still_source(sequence), options).components;
   options.inside.assign(81, true);
   EXPECT_TRUE(analyse(still_source(sequence), options).components.displacements ==
@@ -64,8 +64,7 @@ TEST(RegionPlace, IsEverywhereWhereItHoldsAllVertices) {
 
 TEST(RegionPlace, MovesTheCentresOfGivenComponents) {
   const MeshSequence sequence = take();
-  const GivenComponents given{
-      "take.h5", analyse(still_source(sequence), {.decomposition = {.count = 5}}).components};
+  const GivenComponents given{"take.h5", analyse(still_source(sequence), {.count = 5}).components};
   ASSERT_THAT(given.components.centers, testing::Contains(testing::Ge(40)));
   const Analysis analysis =
       analysis_of(given, sequence, moving_vertices(sequence), in_first_half());
@@ -105,9 +104,8 @@ MeshSequence plate_and_ball() {
 TEST(SmallParts, AreNotedWhereRegionsLieOnThem) {
   Noted noted;
   const Source source = still_source(plate_and_ball());
-  AnalysisOptions options{.compatibility = Compatibility::splocs2013,
-                          .decomposition = {.count = 2}};
-  const Regions regions = choose_regions(analyse(source, options), {.notes = noted.sink()});
+  const AnalysisOptions options{.count = 2, .compatibility = Compatibility::splocs2013};
+  const Regions regions = choose_regions(analyse(source, options), {}, noted.context());
   ASSERT_TRUE(noted.has(Topic::small_parts));
   EXPECT_THAT(
       regions.notes.back(),
@@ -120,16 +118,14 @@ TEST(SmallParts, AreNotedWhereRegionsLieOnThem) {
 TEST(LargeRegions, AreNotedUnlessTheirRadiusIsALength) {
   Noted noted;
   const MeshSequence sequence = plate_and_ball();
-  const Analysis analysis = analyse(still_source(sequence), {.decomposition = {.count = 2}});
-  choose_regions(analysis, {.radius = Length::share(0.9), .notes = noted.sink()});
+  const Analysis analysis = analyse(still_source(sequence), {.count = 2});
+  choose_regions(analysis, {.radius = Length::share(0.9)}, noted.context());
   EXPECT_TRUE(noted.has(Topic::large_regions));
   noted.notes.clear();
-  choose_regions(analysis,
-                 {.radius = Length::of(0.9 * sequence.diameter()), .notes = noted.sink()});
-  choose_regions(analysis, {.notes = noted.sink()});
-  RegionChoiceOptions of_support{.radius = Length::share(0.9), .notes = noted.sink()};
-  of_support.regions.shape = RegionShape::support;
-  choose_regions(analysis, of_support);
+  choose_regions(analysis, {.radius = Length::of(0.9 * sequence.diameter())}, noted.context());
+  choose_regions(analysis, {}, noted.context());
+  choose_regions(analysis, {.radius = Length::share(0.9), .shape = RegionShape::support},
+                 noted.context());
   EXPECT_FALSE(noted.has(Topic::large_regions));
 }
 
@@ -149,18 +145,15 @@ TEST(PartWeights, AreSharesOfTheLargestPart) {
 
 TEST(PartWeights, KeepCentresOffASmallPart) {
   const Source source = still_source(plate_and_ball());
-  const Components components = analyse(source, {.decomposition = {.count = 1}}).components;
+  const Components components = analyse(source, {.count = 1}).components;
   EXPECT_LT(components.centers[0], 441);
 }
 
 TEST(ComponentCount, IsBoundedByWhatFramesTell) {
   Noted noted;
-  AnalysisOptions options{.d_min = Length::share(0.9),
-                          .d_max = Length::share(1),
-                          .decomposition = {.count = 60},
-                          .notes = noted.sink()};
+  AnalysisOptions options{.count = 60, .d_min = Length::share(0.9), .d_max = Length::share(1)};
   const Source source = still_source(take());
-  const Components components = analyse(source, options).components;
+  const Components components = analyse(source, options, noted.context()).components;
   // One disc of d_min holds the patch, and there are 8 frames.
   EXPECT_EQ(components.count(), 8);
   ASSERT_FALSE(noted.notes.empty());

@@ -15,8 +15,7 @@ using testing::ThrowsMessage;
 class RegionSelectorTest : public testing::Test {
  protected:
   TransferResult transferred(const RegionChoiceOptions& regions) {
-    return transfer(source_, {{"actor", actor_}},
-                    {.analysis = {.decomposition = {.count = 4}}, .regions = regions});
+    return transfer(source_, {{"actor", actor_}}, {.analysis = {.count = 4}, .regions = regions});
   }
 
   const MeshSequence source_ = take();
@@ -25,7 +24,7 @@ class RegionSelectorTest : public testing::Test {
 };
 
 TEST_F(RegionSelectorTest, RegionsByEnergyAreTheStrongestThatFit) {
-  const RegionChoiceOptions options{.radius = Length::share(0.12), .completion = {.share = 0}};
+  const RegionChoiceOptions options{.radius = Length::share(0.12), .complete = 0};
   const Regions all = *transferred(options).regions;
   ASSERT_GT(all.regions.size(), 1U);
   for (std::size_t count = 1; count <= all.regions.size(); ++count) {
@@ -37,8 +36,7 @@ TEST_F(RegionSelectorTest, RegionsByEnergyAreTheStrongestThatFit) {
 }
 
 TEST_F(RegionSelectorTest, CompletedRegionsStayWithinTheShare) {
-  RegionChoiceOptions options{.radius = Length::share(0.12),
-                              .completion = {.share = 0.6, .limit = 1}};
+  RegionChoiceOptions options{.radius = Length::share(0.12), .complete = 0.6, .complete_limit = 1};
   const double unbounded = transferred(options).regions->triangle_share();
   for (const double share : {0.3, 0.4, 0.5}) {
     ASSERT_GT(unbounded, share);
@@ -55,9 +53,9 @@ TEST_F(RegionSelectorTest, ReportsTheRegionsThatItSolvesBy) {
   ASSERT_TRUE(result.regions);
   EXPECT_FALSE(result.components);
   EXPECT_LE(result.regions->triangle_share(), 0.4);
-  const TransferResult by_them = transfer(
-      source_, {{"actor", actor_}},
-      {.given = GivenRegions{"chosen", *result.regions}, .regions = {.completion = {.share = 0}}});
+  const TransferResult by_them =
+      transfer(source_, {{"actor", actor_}},
+               {.given = GivenRegions{"chosen", *result.regions}, .regions = {.complete = 0}});
   EXPECT_TRUE(by_them.targets[0].solution.weights() == result.targets[0].solution.weights());
   EXPECT_EQ(by_them.targets[0].error.de_all, result.targets[0].error.de_all);
 }
@@ -100,13 +98,13 @@ TEST_F(RegionSelectorTest, IsBoundToWhereRegionsMayLie) {
 
 TEST_F(RegionSelectorTest, RefusesATargetThatIsSolvedForVertices) {
   TransferOptions options{.regions = {.select = Selector::transfer}};
-  options.solving.space = Space::vertex;
+  options.solve.space = Space::vertex;
   EXPECT_EQ(test::topic_of([&] {
               transfer(source_, {{"actor", actor_}}, options);
             }),
             Topic::no_selection);
   EvaluationOptions curve{.curve = true};
-  curve.solving.space = Space::vertex;
+  curve.solve.space = Space::vertex;
   EXPECT_EQ(test::topic_of([&] {
               evaluate(source_, {"actor", actor_}, curve);
             }),

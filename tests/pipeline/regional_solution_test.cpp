@@ -12,7 +12,7 @@ using testing::ThrowsMessage;
 /// A patch that is shaken everywhere, so that no weights of the whole of it follow.
 class RegionalSolution : public testing::Test {
  protected:
-  RegionalSolution() { options_.solving.per_region = true; }
+  RegionalSolution() { options_.solve.per_region = true; }
 
   TransferResult result() const { return transfer(source_, {{"actor", actor_}}, options_); }
   static double largest_difference(const Frames& a, const Frames& b) {
@@ -21,8 +21,7 @@ class RegionalSolution : public testing::Test {
 
   const MeshSequence source_ = test::shaken(test::patch(), 12, 0.2);
   const BlendshapeModel actor_ = test::model_on(test::bent_patch(), 5);
-  TransferOptions options_{.analysis = {.decomposition = {.count = 3}},
-                           .regions = {.radius = Length::share(0.2)}};
+  TransferOptions options_{.analysis = {.count = 3}, .regions = {.radius = Length::share(0.2)}};
 };
 
 TEST_F(RegionalSolution, IsItsPartsDoneByHand) {
@@ -52,11 +51,11 @@ TEST_F(RegionalSolution, MissesLessThanTheWholeFaces) {
   const double of_regions = result().targets.front().error.de_all;
   TransferOptions full = options_;
   full.full = true;
-  full.solving.per_region = false;
+  full.solve.per_region = false;
   const double of_all = transfer(source_, {{"actor", actor_}}, full).targets.front().error.de_all;
   EXPECT_LT(of_regions, of_all);
   // Whatever the regions, an endless ridge gives the whole face's.
-  options_.solving.local.ridge = 1e12;
+  options_.solve.region_ridge = 1e12;
   EXPECT_NEAR(result().targets.front().error.de_all, of_all, 1e-9 * of_all);
 }
 
@@ -81,7 +80,7 @@ TEST_F(RegionalSolution, NamesWeightsByTheNumbersOfTheRegions) {
 
 TEST_F(RegionalSolution, HasTheSourcesRegionsForEveryTarget) {
   // Completion would give each target discs of its own.
-  options_.regions.completion.share = 1;
+  options_.regions.complete = 0.95;
   const BlendshapeModel other = test::model_on(test::patch(), 9);
   const TransferResult found = transfer(source_, {{"actor", actor_}, {"other", other}}, options_);
   for (const TransferredTarget& target : found.targets) {
@@ -112,18 +111,18 @@ TEST_F(RegionalSolution, RefusesWhatItCannotFollow) {
   const auto message = [this](const std::string& text) {
     EXPECT_THAT([this] { result(); }, ThrowsMessage<std::invalid_argument>(HasSubstr(text)));
   };
-  options_.solving.smoothness = 0.1;
+  options_.solve.smoothness = 0.1;
   message("smoothness: weights of each region are found frame by frame");
-  options_.solving.smoothness = 0;
-  options_.solving.blendshape.symmetry = 1;
+  options_.solve.smoothness = 0;
+  options_.solve.symmetry = 1;
   message("actor: weights of each region follow no rules of expressions");
-  options_.solving.blendshape.symmetry = 0;
-  options_.solving.space = Space::vertex;
+  options_.solve.symmetry = 0;
+  options_.solve.space = Space::vertex;
   message("per_region: actor is solved for vertices");
-  options_.solving.space = Space::automatic;
-  options_.solving.falloff = Length::share(0);
+  options_.solve.space = Space::automatic;
+  options_.solve.falloff = Length::share(0);
   message("falloff is 0");
-  options_.solving.falloff = Length::share(0.1);
+  options_.solve.falloff = Length::share(0.1);
   options_.full = true;
   message("per_region: a full transfer has no regions");
 }

@@ -81,10 +81,10 @@ TEST_F(RetargetTest, KeepsItsMapOverPairs) {
 
 TEST_F(RetargetTest, IsEqualBytesForEveryNumberOfThreads) {
   const RetargetResult one =
-      retarget(take(1), Target{"target", other_}, {.keep_map = true, .threads = 1});
+      retarget(take(1), Target{"target", other_}, {.keep_map = true}, Context().with_threads(1));
   for (const int threads : {2, 5}) {
-    const RetargetResult result =
-        retarget(take(1), Target{"target", other_}, {.keep_map = true, .threads = threads});
+    const RetargetResult result = retarget(take(1), Target{"target", other_}, {.keep_map = true},
+                                           Context().with_threads(threads));
     EXPECT_TRUE(result.transferred.solution.weights() == one.transferred.solution.weights());
     EXPECT_TRUE(result.map->linear == one.map->linear);
     EXPECT_TRUE(result.map->gram == one.map->gram);

@@ -97,7 +97,7 @@ TEST_F(RigTest, KnowsWhatTheTargetHasByANameThatIsWrittenOtherwise) {
   own.names = {"Shape_2"};
   const BlendshapeModel target(bare_.shared_connectivity(), bare_.neutral(), own);
   Noted noted;
-  const Rig made = rig(source_, {"double", target}, {}, {.notes = noted.sink()});
+  const Rig made = rig(source_, {"double", target}, {}, {}, noted.context());
   EXPECT_THAT(made.model.expressions().names,
               testing::ElementsAre("shape0", "shape1", "shape2", "shape3"));
   EXPECT_EQ(named(made, "shape2").origin, RigOrigin::example);
@@ -108,7 +108,8 @@ TEST_F(RigTest, GivesEqualBytesForAnyNumberOfThreadsAndByAnIdentityOfPairs) {
   const std::vector<RigExample> examples = {
       {"shape1", Positions(bare_.neutral().array() * 1.01), 1}};
   const auto made = [&](const Target& target, int threads) {
-    return rig(source_, target, examples, {.threads = threads}).model.expressions().displacements;
+    const Context context = Context().with_threads(threads);
+    return rig(source_, target, examples, {}, context).model.expressions().displacements;
   };
   const Eigen::MatrixXd plain = made({"double", bare_}, 1);
   EXPECT_EQ(made({"double", bare_}, 3), plain);
@@ -118,7 +119,7 @@ TEST_F(RigTest, GivesEqualBytesForAnyNumberOfThreadsAndByAnIdentityOfPairs) {
 TEST_F(RigTest, NotesAnExampleThatIsTheNeutral) {
   Noted noted;
   const Rig made =
-      rig(source_, {"double", bare_}, {{"shape3", bare_.neutral(), 3}}, {.notes = noted.sink()});
+      rig(source_, {"double", bare_}, {{"shape3", bare_.neutral(), 3}}, {}, noted.context());
   EXPECT_EQ(named(made, "shape3").largest, 0);
   EXPECT_THAT(noted.notes, Contains(Field(&Note::text, HasSubstr("target's neutral: shape3"))));
 }
@@ -127,8 +128,7 @@ TEST_F(RigTest, NotesFlippedTriangles) {
   Noted noted;
   Positions folded = bare_.neutral();
   folded.col(0) *= -1;
-  const Rig made =
-      rig(source_, {"double", bare_}, {{"shape3", folded, 3}}, {.notes = noted.sink()});
+  const Rig made = rig(source_, {"double", bare_}, {{"shape3", folded, 3}}, {}, noted.context());
   EXPECT_GT(named(made, "shape3").flipped, 0);
   EXPECT_THAT(noted.notes,
               Contains(Field(&Note::text, HasSubstr("may not be usable: flipped triangles in "

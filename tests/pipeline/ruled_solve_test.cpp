@@ -76,14 +76,14 @@ TEST_F(RuledSolveTest, LeavesOneAndTwoFramesAsTheyAre) {
 }
 
 TEST_F(RuledSolveTest, IsTheSameForAnyThreadsAndOfAStream) {
-  SolveOptions options{.smoothness = 0.1, .threads = 1};
+  const SolveOptions options{.smoothness = 0.1};
   for (const BlendshapeModel* model : {&actor_, &mesh_}) {
     const Target target{"target", *model};
-    options.threads = 1;
-    const Frames expected = solved(target, options);
-    options.threads = 3;
-    const Source streamed = prepare_source(test::streamed(take_));
-    EXPECT_EQ(frames_of(solve(streamed, target, some_, options).sequence), expected);
+    const auto frames = [&](const Source& source, int threads) {
+      const Context context = Context().with_threads(threads);
+      return frames_of(solve(source, target, some_, options, context).sequence);
+    };
+    EXPECT_EQ(frames(prepare_source(test::streamed(take_)), 3), frames(source_, 1));
   }
 }
 
@@ -102,12 +102,12 @@ TEST_F(RuledSolveTest, KeepsSeamsClosedWhenItSmooths) {
 }
 
 TEST_F(RuledSolveTest, CountsWhatItSmoothsAsMemory) {
-  for (const BlendshapeModel* model : {&actor_, &mesh_}) {
-    EXPECT_GT(solution_bytes(take_, *model, {.smoothness = 0.1}),
-              solution_bytes(take_, *model, {}));
-  }
-  EXPECT_EQ(solution_bytes(take_, mesh_, {.smoothness = 0.1}) - solution_bytes(take_, mesh_, {}),
-            frame_bytes(take_));
+  const auto bytes = [this](const BlendshapeModel& model, double smoothness) {
+    return solution_bytes(take_, model, {.smoothness = smoothness}, Context());
+  };
+  EXPECT_GT(bytes(actor_, 0.1), bytes(actor_, 0));
+  EXPECT_GT(bytes(mesh_, 0.1), bytes(mesh_, 0));
+  EXPECT_EQ(bytes(mesh_, 0.1) - bytes(mesh_, 0), frame_bytes(take_));
 }
 
 TEST_F(RuledSolveTest, HasTheTargetsRulesInItsMeshAndItsWeights) {
@@ -133,17 +133,17 @@ TEST_F(RuledSolveTest, RefusesRulesOfOtherExpressionsBeforeItComputes) {
 }
 
 TEST_F(RuledSolveTest, RefusesWhatCannotActOnTheTarget) {
-  options_.blendshape.symmetry = 1;
+  options_.symmetry = 1;
   EXPECT_EQ(test::topic_of([&] { check_rules({"actor", actor_}, options_); }), Topic::no_pairs);
-  options_.blendshape.symmetry = 0;
-  options_.blendshape.exclusive = Exclusive::eyes;
+  options_.symmetry = 0;
+  options_.exclusive = Exclusive::eyes;
   EXPECT_EQ(test::topic_of([&] {
               check_rules({"actor", actor_}, options_);
             }),
             Topic::no_exclusives);
   Target paired{"actor", actor_};
   paired.rules.pairs = {{"shape0", "shape1"}};
-  options_.blendshape = {.symmetry = 1};
+  options_ = {.symmetry = 1};
   EXPECT_NO_THROW(check_rules(paired, options_));
 }
 

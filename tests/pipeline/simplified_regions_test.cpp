@@ -15,7 +15,7 @@ Source source_of(const MeshSequence& sequence) {
   return prepare_source(sequence, {.head_motion = HeadMotion::none});
 }
 
-const AnalysisOptions kThree = {.decomposition = {.count = 3}};
+const AnalysisOptions kThree = {.count = 3};
 
 TEST(SimplifiedRegions, OfAllVerticesAreTheRegions) {
   const MeshSequence sequence = take();
@@ -69,16 +69,15 @@ TEST(SimplifiedRegions, HoldTheShareOfTheMotionOfAllVertices) {
   EXPECT_NEAR(all.energy_share, motion_inside(sequence, all.inside), 1e-12);
   // As many as it takes by that share.
   RegionChoiceOptions of_first = choice;
-  of_first.regions.coverage = 0.99 * all.regions.front().energy_share;
+  of_first.coverage = 0.99 * all.regions.front().energy_share;
   const Regions first =
       regions_by_simplified(source_of(sequence), {.share = 0.4}, kThree, of_first).regions;
   EXPECT_EQ(first.regions.size(), 1U);
-  EXPECT_GE(first.energy_share, *of_first.regions.coverage);
+  EXPECT_GE(first.energy_share, *of_first.coverage);
   // More than there is is said.
   test::Noted noted;
-  of_first.regions.coverage = 1;
-  of_first.notes = noted.sink();
-  regions_by_simplified(source_of(sequence), {.share = 0.4}, kThree, of_first);
+  of_first.coverage = 1;
+  regions_by_simplified(source_of(sequence), {.share = 0.4}, kThree, of_first, noted.context());
   EXPECT_TRUE(std::ranges::any_of(noted.notes, [](const Note& note) {
     return note.text.find("100 % were asked for") != std::string::npos;
   }));
@@ -105,8 +104,7 @@ TEST(SimplifiedRegions, RefuseRegionsThatAreNoDiscs) {
   const MeshSequence sequence = take();
   EXPECT_THAT(
       [&] {
-        regions_by_simplified(source_of(sequence), {}, kThree,
-                              {.regions = {.shape = RegionShape::support}});
+        regions_by_simplified(source_of(sequence), {}, kThree, {.shape = RegionShape::support});
       },
       ThrowsMessage<std::invalid_argument>(HasSubstr("discs")));
 }

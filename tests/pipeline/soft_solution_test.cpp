@@ -87,7 +87,7 @@ TEST_F(SoftSolutionTest, FindsAndFadesExpressionsByTheWeights) {
 
 TEST_F(SoftSolutionTest, SmoothsAndFollowsRulesAsAnyOther) {
   SolveOptions options{.space = Space::blendshape, .smoothness = 0.1};
-  options.blendshape.sparsity = 0.01;
+  options.sparsity = 0.01;
   const Solution solution = solve(source_, actor(), soft_, options);
   EXPECT_GE(solution.weights().minCoeff(), 0);
   EXPECT_LE(solution.weights().maxCoeff(), 1);
@@ -114,20 +114,20 @@ TEST_F(SoftSolutionTest, NotesACreaseThatIsSeen) {
   test::Noted noted;
   TransferError error;
   error.crease = 0.9 * kVisibleCrease;
-  note_crease(error, actor(), noted.sink());
+  note_crease(error, actor(), noted.context());
   EXPECT_FALSE(noted.has(Topic::visible_crease));
   error.crease = 1.1 * kVisibleCrease;
-  note_crease(error, actor(), noted.sink());
+  note_crease(error, actor(), noted.context());
   EXPECT_TRUE(noted.has(Topic::visible_crease));
 }
 
 TEST_F(SoftSolutionTest, RefusesWhatContradictsTheWeights) {
   SolveOptions options{.space = Space::vertex};
   const auto work = [&] { solve(source_, actor(), soft_, options); };
-  options.vertex.outside = Outside::identity;
+  options.outside = Outside::identity;
   EXPECT_EQ(topic_of(work), Topic::soft_outside);
-  options.vertex.outside = Outside::fixed;
-  options.vertex.anchor = Anchor::centroid;
+  options.outside = Outside::fixed;
+  options.anchor = Anchor::centroid;
   EXPECT_EQ(topic_of(work), Topic::anchor_and_weights);
   options = {.space = Space::blendshape};
   options.per_region = true;

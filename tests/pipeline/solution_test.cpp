@@ -46,14 +46,15 @@ TEST_F(SolveTest, RefusesWeightsOfATargetWithoutExpressions) {
 }
 
 TEST_F(SolveTest, RefusesAnAnchorThatTheMeshDoesNotHave) {
-  options_.vertex = {.anchor = Anchor::vertex, .anchor_vertex = 81};
+  options_.anchor = Anchor::vertex;
+  options_.anchor_vertex = 81;
   const auto work = [this] { solve(source_, {"mesh", mesh_}, whole(*source_.sequence), options_); };
   EXPECT_EQ(test::topic_of(work), Topic::anchor_vertex);
 }
 
 TEST_F(SolveTest, RefusesAnAnchorWhereFixedVerticesHoldTheMesh) {
   for (const Anchor anchor : {Anchor::source_motion, Anchor::centroid}) {
-    options_.vertex.anchor = anchor;
+    options_.anchor = anchor;
     EXPECT_EQ(test::topic_of([this] {
                 solve(source_, {"mesh", mesh_}, some_, options_);
               }),
@@ -62,15 +63,14 @@ TEST_F(SolveTest, RefusesAnAnchorWhereFixedVerticesHoldTheMesh) {
 }
 
 TEST_F(SolveTest, TakesAnAnchorWhereNothingIsFixed) {
-  options_.vertex.anchor = Anchor::centroid;
+  options_.anchor = Anchor::centroid;
   EXPECT_NO_THROW(solve(source_, {"mesh", mesh_}, whole(*source_.sequence), options_));
-  options_.vertex.outside = Outside::identity;
+  options_.outside = Outside::identity;
   EXPECT_NO_THROW(solve(source_, {"mesh", mesh_}, some_, options_));
 }
 
 TEST_F(SolveTest, NotesExpressionsThatTheTrianglesDoNotShow) {
   Noted noted;
-  options_.notes = noted.sink();
   const VertexIndex corner = 0;
   Selection few;
   for (int t = 0; t < actor_.triangles().rows(); ++t) {
@@ -83,7 +83,7 @@ TEST_F(SolveTest, NotesExpressionsThatTheTrianglesDoNotShow) {
   two.displacements(3 * corner + 2, 1) = 1;
   two.displacements.col(0).head(3 * 20).setZero();
   const BlendshapeModel model(actor_.shared_connectivity(), actor_.neutral(), two);
-  solve(source_, {"actor", model}, few, options_);
+  solve(source_, {"actor", model}, few, options_, noted.context());
   ASSERT_FALSE(noted.notes.empty());
   EXPECT_EQ(noted.notes[0].text,
             "actor: 1 expressions do not move in the regions and stay 0: shape0");
@@ -95,8 +95,8 @@ TEST_F(SolveTest, NotesVerticesThatNoTriangleMoves) {
   const BlendshapeModel mesh(loose.sequence->shared_connectivity(), loose.sequence->rest(),
                              {{}, Eigen::MatrixXd(3 * 82, 0)});
   Noted noted;
-  options_.notes = noted.sink();
-  const Solution solution = solve(loose, {"mesh", mesh}, whole(*loose.sequence), options_);
+  const Solution solution =
+      solve(loose, {"mesh", mesh}, whole(*loose.sequence), options_, noted.context());
   EXPECT_THAT(
       noted.notes.front().text,
       "mesh: 1 vertices of no triangle, the first is vertex 81, stay where they are at rest");
@@ -109,8 +109,7 @@ TEST_F(SolveTest, NotesExpressionsThatLookAlike) {
   twins.displacements.col(1) = twins.displacements.col(0) + 1e-4 * twins.displacements.col(1);
   const BlendshapeModel model(actor_.shared_connectivity(), actor_.neutral(), twins);
   Noted noted;
-  options_.notes = noted.sink();
-  solve(source_, {"twins", model}, whole(*source_.sequence), options_);
+  solve(source_, {"twins", model}, whole(*source_.sequence), options_, noted.context());
   EXPECT_TRUE(noted.has(Topic::poor_condition));
 }
 
@@ -119,15 +118,14 @@ TEST_F(SolveTest, NotesARestPoseThatIsNotNeutral) {
   const BlendshapeModel model = test::model_on(test::patch(), 5);
   const Source wrong{performance, with_rest(performance, model.pose(Eigen::VectorXd::Ones(5))), {}};
   Noted noted;
-  options_.notes = noted.sink();
-  solve(wrong, {"actor", model}, whole(*performance), options_);
+  solve(wrong, {"actor", model}, whole(*performance), options_, noted.context());
   EXPECT_TRUE(noted.has(Topic::unneutral_rest));
   noted.notes.clear();
   Source known = wrong;
   known.neutral_is_known = true;
-  solve(known, {"actor", model}, whole(*performance), options_);
+  solve(known, {"actor", model}, whole(*performance), options_, noted.context());
   EXPECT_FALSE(noted.has(Topic::unneutral_rest));
-  solve(source_, {"actor", model}, whole(*performance), options_);
+  solve(source_, {"actor", model}, whole(*performance), options_, noted.context());
   EXPECT_FALSE(noted.has(Topic::unneutral_rest));
 }
 
@@ -181,7 +179,8 @@ TEST_F(SeamedSolveTest, IsTheSameOfAStreamByAnyNumberOfThreads) {
       test::frames_of(solve(prepare_source(take_), {"mesh", target}, all).sequence);
   for (const int threads : {1, 3}) {
     const Source source = prepare_source(test::streamed(take_));
-    const Solution found = solve(source, {"mesh", target}, all, {.threads = threads});
+    const Solution found =
+        solve(source, {"mesh", target}, all, {}, Context().with_threads(threads));
     EXPECT_TRUE(test::frames_of(found.sequence) == expected) << threads;
   }
 }
@@ -193,7 +192,7 @@ TEST_F(SeamedSolveTest, NotesAndCountsTrianglesThatCollapse) {
   const MeshSequence take(target.shared_connectivity(), take_.positions(), {}, take_.rest());
   Noted noted;
   const Solution found =
-      solve(prepare_source(take), {"mesh", target}, whole(take), {.notes = noted.sink()});
+      solve(prepare_source(take), {"mesh", target}, whole(take), {}, noted.context());
   EXPECT_EQ(found.collapsed_triangles, 1);
   EXPECT_EQ(found.degenerate_source_triangles, 0);
   EXPECT_EQ(found.degenerate_target_triangles, 0);

@@ -24,7 +24,7 @@ constexpr double kRounding = 1e-13;
 
 TEST(SourceRestPose, IsByDefaultTheNeutralWhereThatIsKnown) {
   Noted noted;
-  const Source source = prepare_source(take(), {.notes = noted.sink()});
+  const Source source = prepare_source(take(), {}, {}, noted.context());
   EXPECT_TRUE(source.sequence->rest() == take().rest());
   EXPECT_THAT(noted.notes, IsEmpty());
 }
@@ -32,8 +32,8 @@ TEST(SourceRestPose, IsByDefaultTheNeutralWhereThatIsKnown) {
 TEST(SourceRestPose, IsOtherwiseTheFirstFrameWithANote) {
   Noted noted;
   const MeshSequence sequence = bare(take());
-  const Source source = prepare_source(
-      sequence, {.name = "smile", .head_motion = HeadMotion::none, .notes = noted.sink()});
+  const Source source = prepare_source(sequence, {.name = "smile", .head_motion = HeadMotion::none},
+                                       {}, noted.context());
   EXPECT_TRUE(source.sequence->rest() == sequence.frame(0));
   ASSERT_EQ(noted.notes.size(), 1U);
   EXPECT_EQ(noted.notes[0].topic, Topic::unknown_neutral);
@@ -76,10 +76,9 @@ Positions of_another_face(const Positions& rest) {
 TEST(SourceRestPose, OfAnotherFaceIsNoted) {
   const MeshSequence sequence = take(150);
   const Positions other = of_another_face(sequence.rest());
-  const auto is_noted = [&](SourceOptions options) {
+  const auto is_noted = [&](const SourceOptions& options) {
     Noted noted;
-    options.notes = noted.sink();
-    prepare_source(sequence, options);
+    prepare_source(sequence, options, {}, noted.context());
     return noted.has(Topic::other_rest);
   };
   EXPECT_TRUE(is_noted({.rest = other}));
@@ -108,7 +107,7 @@ TEST(HeadMotion, IsLookedForOnlyWhereTheSourceMayHaveSome) {
 TEST(HeadMotion, IsSaidWithItsReasonAndSize) {
   Noted noted;
   const MeshSequence moved = with_motion(bare(take()), nodding(8));
-  const Source source = prepare_source(moved, {.name = "nod", .notes = noted.sink()});
+  const Source source = prepare_source(moved, {.name = "nod"}, {}, noted.context());
   EXPECT_EQ(source.head_motion.how, "stable");
   EXPECT_EQ(source.head_motion.why, "the neutral is not known");
   // From the first frame to the last, which nods by 0.7 radians; expressions move the fit a bit.
@@ -121,12 +120,12 @@ TEST(HeadMotion, IsSaidWithItsReasonAndSize) {
 TEST(HeadMotion, ThatIsNotTakenOutIsNotedWhereTheHeadTurns) {
   Noted noted;
   const MeshSequence moved = with_motion(bare(take()), nodding(8));
-  prepare_source(moved, {.rest = take().rest(), .notes = noted.sink()});
+  prepare_source(moved, {.rest = take().rest()}, {}, noted.context());
   EXPECT_TRUE(noted.has(Topic::turning_head));
   noted.notes.clear();
-  prepare_source(bare(take()), {.rest = take().rest(), .notes = noted.sink()});
-  prepare_source(moved,
-                 {.rest = take().rest(), .head_motion = HeadMotion::none, .notes = noted.sink()});
+  prepare_source(bare(take()), {.rest = take().rest()}, {}, noted.context());
+  prepare_source(moved, {.rest = take().rest(), .head_motion = HeadMotion::none}, {},
+                 noted.context());
   EXPECT_FALSE(noted.has(Topic::turning_head));
 }
 
@@ -136,7 +135,7 @@ TEST(HeadMotion, ThatIsNotTakenOutIsNotedWhereTheHeadSlidesOrHasAnotherSize) {
   Noted noted;
   const auto notes_of = [&](const Positions& given) {
     noted.notes.clear();
-    prepare_source(bare(take()), {.name = "a take", .rest = given, .notes = noted.sink()});
+    prepare_source(bare(take()), {.name = "a take", .rest = given}, {}, noted.context());
     return noted.notes;
   };
   EXPECT_THAT(notes_of(rest), IsEmpty());
@@ -205,11 +204,9 @@ MeshSequence rippling(bool half_is_still) {
 
 TEST(HeadMotion, ThatNoVertexIsStillEnoughToTellIsNoted) {
   const auto prepared = [](const MeshSequence& sequence, Noted& noted) {
-    return prepare_source(sequence, {.name = "wave",
-                                     .rest = take().rest(),
-                                     .head_motion = HeadMotion::stable,
-                                     .notes = noted.sink()})
-        .head_motion;
+    const SourceOptions options{
+        .name = "wave", .rest = take().rest(), .head_motion = HeadMotion::stable};
+    return prepare_source(sequence, options, {}, noted.context()).head_motion;
   };
   Noted moving, still;
   EXPECT_TRUE(prepared(rippling(false), moving).is_uncertain());
@@ -224,12 +221,12 @@ TEST(HeadMotion, ThatNoVertexIsStillEnoughToTellIsNoted) {
 
 TEST(HeadMotion, IsFoundJointlyWhereThatPredictsTwiceAsWell) {
   const auto prepared = [](double of_stable, std::optional<HeadMotion> asked, Noted& noted) {
-    SourceOptions options{.rest = SourceRest::first, .notes = noted.sink()};
+    SourceOptions options{.rest = SourceRest::first};
     if (asked) options.head_motion = *asked;
-    options.joint = [of_stable](const Source& source) {
+    const JointSearch joint = [of_stable](const Source& source, const Context&) {
       return JointMotion{nodding(source.sequence->frames()), HeldOutErrors{of_stable, 0.01}};
     };
-    return prepare_source(rippling(false), options).head_motion;
+    return prepare_source(rippling(false), options, joint, noted.context()).head_motion;
   };
   Noted noted;
   EXPECT_EQ(prepared(0.021, {}, noted).how, "joint");

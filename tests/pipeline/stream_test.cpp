@@ -38,10 +38,10 @@ class StreamedTransferTest : public testing::Test {
   }
 
   /// Compares every number of both, and returns how often each frame was read.
-  void expect_the_same(const MeshSequence& sequence) const {
+  void expect_the_same(const MeshSequence& sequence, const Context& context = {}) const {
     const test::Stream stream(sequence);
-    const TransferResult expected = transfer(sequence, targets_, options_);
-    const TransferResult found = transfer(stream, targets_, options_);
+    const TransferResult expected = transfer(sequence, targets_, options_, context);
+    const TransferResult found = transfer(stream, targets_, options_, context);
     ASSERT_EQ(found.targets.size(), expected.targets.size());
     for (std::size_t t = 0; t < found.targets.size(); ++t) {
       const Solution &one = found.targets[t].solution, &other = expected.targets[t].solution;
@@ -67,10 +67,7 @@ TEST_F(StreamedTransferTest, IsTheOneInMemoryBitByBit) {
 
 TEST_F(StreamedTransferTest, ByAllTrianglesIsTheOneInMemoryBitByBit) {
   options_.full = true;
-  for (const int threads : {1, 3}) {
-    options_.threads = threads;
-    expect_the_same(source_);
-  }
+  for (const int threads : {1, 3}) expect_the_same(source_, Context().with_threads(threads));
 }
 
 TEST_F(StreamedTransferTest, WithHeadMotionIsTheOneInMemoryBitByBit) {
@@ -96,7 +93,7 @@ TEST_F(StreamedTransferTest, FromEveryRestPoseIsTheOneInMemoryBitByBit) {
 
 TEST_F(StreamedTransferTest, ThatLooksForRegionsIsTheOneInMemoryBitByBit) {
   options_.given = {};
-  options_.analysis.decomposition.count = 3;
+  options_.analysis.count = 3;
   options_.regions.radius = Length::share(0.3);
   expect_the_same(source_);
 }
@@ -121,16 +118,16 @@ TEST_F(StreamedTransferTest, OfAStreamThatBreaksThrowsWhatReadingThrows) {
 TEST_F(StreamedTransferTest, EndsWhereverProgressAsksForIt) {
   std::vector<double> shares;
   options_.source.head_motion = HeadMotion::stable;
-  options_.progress = [&shares](double share) {
+  const auto keep = [&shares](double share) {
     shares.push_back(share);
     return true;
   };
   const test::Stream stream(moved_);
-  transfer(stream, targets_, options_);
+  transfer(stream, targets_, options_, Context().with_progress(keep));
   EXPECT_TRUE(std::ranges::is_sorted(shares));
   for (const double last : std::set<double>(shares.begin(), shares.end())) {
-    options_.progress = [last](double share) { return share < last; };
-    EXPECT_THROW(transfer(stream, targets_, options_), Cancelled) << last;
+    const Context context = Context().with_progress([last](double share) { return share < last; });
+    EXPECT_THROW(transfer(stream, targets_, options_, context), Cancelled) << last;
   }
 }
 

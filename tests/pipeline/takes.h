@@ -49,12 +49,12 @@ inline std::vector<RigidTransform> nodding(int frames) {
   return motion;
 }
 
-/// Keeps what is noted.
+/// Keeps the notes of a computation.
 struct Noted {
   std::vector<Note> notes;
 
-  Notes sink() {
-    return [this](const Note& note) { notes.push_back(note); };
+  Context context() {
+    return Context().with_notes([this](const Note& note) { notes.push_back(note); });
   }
   bool has(Topic topic) const {
     return std::ranges::find(notes, topic, &Note::topic) != notes.end();

@@ -21,11 +21,10 @@ class TransferTest : public testing::Test {
   const BlendshapeModel mesh_{actor_.shared_connectivity(),
                               actor_.neutral(),
                               {{}, Eigen::MatrixXd(3 * actor_.vertices(), 0)}};
-  TransferOptions options_{.analysis = {.decomposition = {.count = 4}},
-                           .regions = {.radius = Length::share(0.3)}};
+  TransferOptions options_{.analysis = {.count = 4}, .regions = {.radius = Length::share(0.3)}};
 
-  TransferredTarget to(const BlendshapeModel& model) const {
-    return transfer(source_, {{"actor", model}}, options_).targets.front();
+  TransferredTarget to(const BlendshapeModel& model, const Context& context = {}) const {
+    return transfer(source_, {{"actor", model}}, options_, context).targets.front();
   }
 
   /// The source where the target stands.
@@ -120,15 +119,14 @@ TEST_F(TransferTest, ToManyTargetsIsTheOneToEach) {
 
 TEST_F(TransferTest, SaysWhereTheResultIsNotUsable) {
   test::Noted noted;
-  options_.notes = noted.sink();
   options_.full = true;
-  to(mesh_);
+  to(mesh_, noted.context());
   EXPECT_TRUE(noted.notes.empty());
   // Few triangles whose surroundings are held where they are.
   options_.full = false;
   options_.given = GivenRegions{
       "rois", regions_from_vertices(actor_.vertices(), actor_.triangles(), {{10, 11, 12}})};
-  const TransferredTarget torn = to(mesh_);
+  const TransferredTarget torn = to(mesh_, noted.context());
   EXPECT_GT(missed_share(torn.error), 0.5);
   const auto found = std::ranges::find(noted.notes, Topic::poor_condition, &Note::topic);
   ASSERT_NE(found, noted.notes.end());
@@ -139,15 +137,14 @@ TEST_F(TransferTest, SaysWhereTheResultIsNotUsable) {
 
 TEST_F(TransferTest, SaysWhatWouldBeMissingWithoutTheOptionsThatHoldIt) {
   test::Noted noted;
-  options_.notes = noted.sink();
   options_.full = true;
-  options_.solving.smoothness = 1e-3;
+  options_.solve.smoothness = 1e-3;
   Target held{"actor", actor_};
   held.rules.name = "low.json";
   for (const std::string& name : actor_.expressions().names) {
     held.rules.expressions[name].maximum = 0.01;
   }
-  const TransferResult result = transfer(source_, {held}, options_);
+  const TransferResult result = transfer(source_, {held}, options_, noted.context());
   EXPECT_GT(missed_share(result.targets.front().error), 0.5);
   ASSERT_FALSE(noted.notes.empty());
   EXPECT_THAT(noted.notes.back().text,
@@ -162,10 +159,9 @@ GivenRegions a_corner(const BlendshapeModel& model) {
 
 TEST_F(TransferTest, CompletesRegionsThatLeaveExpressionsUnseen) {
   test::Noted noted;
-  options_.notes = noted.sink();
   options_.given = a_corner(actor_);
-  options_.regions.completion.limit = 1;
-  const TransferResult result = transfer(source_, {{"actor", actor_}}, options_);
+  options_.regions.complete_limit = 1;
+  const TransferResult result = transfer(source_, {{"actor", actor_}}, options_, noted.context());
   const TransferredTarget& target = result.targets.front();
   ASSERT_TRUE(target.regions);
   EXPECT_GT(target.regions->regions.size(), 1U);
@@ -177,12 +173,12 @@ TEST_F(TransferTest, CompletesRegionsThatLeaveExpressionsUnseen) {
   EXPECT_THAT(noted.notes.front().text, AllOf(HasSubstr("added to the regions ("),
                                               HasSubstr("of the triangles), which hardly see")));
 
-  options_.regions.completion.limit = 0;
-  to(actor_);
+  options_.regions.complete_limit = 0;
+  to(actor_, noted.context());
   EXPECT_TRUE(noted.has(Topic::completion_limit));
 
-  options_.regions.completion.share = 0;
-  const TransferredTarget as_given = to(actor_);
+  options_.regions.complete = 0;
+  const TransferredTarget as_given = to(actor_, noted.context());
   EXPECT_EQ(as_given.regions->regions.size(), 1U);
   EXPECT_GT(as_given.error.de_all, target.error.de_all);
 }
@@ -214,10 +210,8 @@ TEST_F(TransferTest, SumsOverTwoEdgesWhereItIsToBeAsThePaper) {
 }
 
 TEST_F(TransferTest, DoesNotDependOnTheNumberOfThreads) {
-  options_.threads = 1;
-  const TransferredTarget one = to(actor_);
-  options_.threads = 3;
-  EXPECT_TRUE(frames_of(one) == frames_of(to(actor_)));
+  EXPECT_TRUE(frames_of(to(actor_, Context().with_threads(1))) ==
+              frames_of(to(actor_, Context().with_threads(3))));
 }
 
 TEST_F(TransferTest, GivesHeadMotionBackUnlessItIsDropped) {
@@ -240,10 +234,10 @@ TEST_F(TransferTest, GivesHeadMotionBackUnlessItIsDropped) {
 TEST_F(TransferTest, RefusesATargetBeforeAnythingIsComputed) {
   const BlendshapeModel other = test::model_on(test::grid(3, 3), 1);
   int reports = 0;
-  options_.progress = [&reports](double) { return ++reports > 0; };
+  const Context context = Context().with_progress([&reports](double) { return ++reports > 0; });
   EXPECT_THAT(
       [&] {
-        transfer(source_, {{"actor", actor_}, {"small", other}}, options_);
+        transfer(source_, {{"actor", actor_}, {"small", other}}, options_, context);
       },
       ThrowsMessage<MismatchError>("small: 9 vertices, expected 81 as in the source"));
   EXPECT_EQ(reports, 0);
@@ -309,19 +303,19 @@ TEST_F(TransferTest, RefusesRegionsOfAnotherMeshOrWithoutATriangle) {
 
 TEST_F(TransferTest, ReportsProgressThatRisesAndEndsWhereItIsAskedTo) {
   std::vector<double> shares;
-  options_.progress = [&shares](double share) {
+  const auto keep = [&shares](double share) {
     shares.push_back(share);
     return true;
   };
-  to(actor_);
+  to(actor_, Context().with_progress(keep));
   EXPECT_TRUE(std::ranges::is_sorted(shares));
   EXPECT_EQ(shares.back(), 1);
-  options_.progress = [](double share) { return share < 0.5; };
-  EXPECT_THROW(to(actor_), Cancelled);
+  const auto stop = [](double share) { return share < 0.5; };
+  EXPECT_THROW(to(actor_, Context().with_progress(stop)), Cancelled);
 }
 
 TEST_F(TransferTest, ChecksItsRangesBeforeItComputes) {
-  options_.analysis.decomposition.rho = 0;
+  options_.analysis.rho = 0;
   EXPECT_THAT([&] { to(actor_); }, ThrowsMessage<std::invalid_argument>(HasSubstr("rho is 0")));
 }
 

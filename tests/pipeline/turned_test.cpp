@@ -84,7 +84,7 @@ class TurnedTest : public testing::Test {
     return test::model_on(test::patch(), 6).animate(test::random_weights(kFrames, 6, seed));
   }
   static TransferOptions by_regions() {
-    return {.analysis = {.decomposition = {.count = 4}}, .regions = {.radius = Length::share(0.2)}};
+    return {.analysis = {.count = 4}, .regions = {.radius = Length::share(0.2)}};
   }
   static TransferResult onto(const MeshSequence& source, const BlendshapeModel& target,
                              const TransferOptions& options) {

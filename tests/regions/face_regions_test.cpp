@@ -7,7 +7,6 @@
 #include "tests/shapes.h"
 #include "tests/shared_data.h"
 #include "toolkit/mesh/inspection.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/regions/regions.h"
 
 /// Regions with distances along the surface, from decomposition to the triangles.

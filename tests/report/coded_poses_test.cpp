@@ -62,17 +62,18 @@ double largest_error(const MixedPoses& mixed, const MeshSequence& sequence) {
 
 TEST(MixedPoses, OfAMixtureOfThreeAreThreeForAnyNumberOfThreads) {
   const MeshSequence sequence = mixture(30);
-  const auto poses = mixed(sequence, all_frames(sequence), 100, 2);
+  const auto poses = mixed(sequence, all_frames(sequence), 100, Context().with_threads(2));
   ASSERT_TRUE(poses);
   EXPECT_EQ(poses->basis.rows(), 3);
   EXPECT_TRUE(poses->corrections.empty());
   // A fourth of a step by the basis, an eighth by rounding, root mean square.
   EXPECT_LE(largest_error(*poses, sequence), poses->step);
-  const auto one = mixed(sequence, all_frames(sequence), 100, 1);
+  const auto one = mixed(sequence, all_frames(sequence), 100, Context().with_threads(1));
   ASSERT_TRUE(one);
   EXPECT_EQ(one->basis, poses->basis);
   EXPECT_EQ(one->weights, poses->weights);
-  EXPECT_FALSE(mixed(sequence, all_frames(sequence), 2, 1)) << "more than allowed";
+  EXPECT_FALSE(mixed(sequence, all_frames(sequence), 2, Context().with_threads(1)))
+      << "more than allowed";
 }
 
 TEST(MixedPoses, ShowWhereOneVertexLeapsInOneFrame) {
@@ -80,7 +81,7 @@ TEST(MixedPoses, ShowWhereOneVertexLeapsInOneFrame) {
   Frames frames = smooth.positions();
   frames(17, 3 * 4000 + 1) += 5;
   const MeshSequence sequence = smooth.with_frames(frames);
-  const auto poses = mixed(sequence, all_frames(sequence), 100, 1);
+  const auto poses = mixed(sequence, all_frames(sequence), 100, Context().with_threads(1));
   ASSERT_TRUE(poses);
   ASSERT_FALSE(poses->corrections.empty());
   EXPECT_LE(largest_error(*poses, sequence), poses->step * (1 + 1e-9));
@@ -88,7 +89,7 @@ TEST(MixedPoses, ShowWhereOneVertexLeapsInOneFrame) {
 
 TEST(MixedPoses, AreThoseOfTheFramesThatAreAskedFor) {
   const MeshSequence sequence = mixture(30);
-  const auto poses = mixed(sequence, {29, 0, 7, 8, 9, 10, 11}, 100, 1);
+  const auto poses = mixed(sequence, {29, 0, 7, 8, 9, 10, 11}, 100, Context().with_threads(1));
   ASSERT_TRUE(poses);
   ASSERT_EQ(poses->weights.rows(), 7);
   const Positions last = sequence.frame(29);
@@ -98,7 +99,7 @@ TEST(MixedPoses, AreThoseOfTheFramesThatAreAskedFor) {
 
 TEST(MixedPoses, OfAStillFaceAreItsRest) {
   const MeshSequence sequence = mixture(6, 0);
-  const auto poses = mixed(sequence, all_frames(sequence), 100, 1);
+  const auto poses = mixed(sequence, all_frames(sequence), 100, Context().with_threads(1));
   ASSERT_TRUE(poses);
   EXPECT_LE(largest_error(*poses, sequence), poses->step / 8);
 }
@@ -110,7 +111,7 @@ TEST(MixedPoses, AreNoneOfNoise) {
   std::normal_distribution<double> noise(0, 0.1);  // five steps
   for (double& number : frames.reshaped()) number += noise(random);
   const MeshSequence sequence = smooth.with_frames(frames);
-  EXPECT_FALSE(mixed(sequence, all_frames(sequence), 100, 1));
+  EXPECT_FALSE(mixed(sequence, all_frames(sequence), 100, Context().with_threads(1)));
 }
 
 }  // namespace

@@ -38,13 +38,13 @@ const Outcome& transfer_report() {
 /// What runs by three components find, computed once.
 const ReportStudy& transfer_study() {
   static const ReportStudy found =
-      study(test::named(run_of("transfer", "actor", {{"k", std::int64_t{3}}})), {2}, {}, {});
+      study(test::named(run_of("transfer", "actor", {{"k", std::int64_t{3}}})), {2});
   return found;
 }
 
 const ReportStudy& regions_study() {
   static const ReportStudy found =
-      study(test::named(run_of("regions", "", {{"k", std::int64_t{3}}})), {2}, {}, {});
+      study(test::named(run_of("regions", "", {{"k", std::int64_t{3}}})), {2});
   return found;
 }
 
@@ -113,7 +113,7 @@ TEST(Report, HasTheRowsThatEvaluateHas) {
   const RunRead run = run_of("evaluate", "actor", {{"k", counts}});
   const OperationTable table = test::full_table();
   json expected = json::parse(table.find("evaluate")->run(run.invocation).report).at("rows");
-  const ReportStudy found = study(test::named(run), {2}, {}, {});
+  const ReportStudy found = study(test::named(run), {2});
   json rows = json::parse(table_of(found.transfer->rows).json()).at("rows");
   ASSERT_EQ(rows.size(), expected.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -128,7 +128,7 @@ TEST(Report, HasTheRowsThatEvaluateHas) {
 TEST(Report, ShowsEveryComponentAtWeightOneTheStrongestFirst) {
   // More components than bumps: several share a centre, and so a region.
   const RunRead run = run_of("regions", "", {{"k", std::int64_t{5}}});
-  const ReportStudy found = study(test::named(run), {2}, {}, {});
+  const ReportStudy found = study(test::named(run), {2});
   const Components& components = *found.components;
   const Eigen::VectorXd energy = motion_energy(components);
   const std::vector<int> order = strongest_components(components, 100);
@@ -154,7 +154,7 @@ TEST(Report, ShowsEveryComponentAtWeightOneTheStrongestFirst) {
 
 TEST(Report, ShowsATargetOfAnotherUnitAtTheSourcesSize) {
   const ReportStudy metres =
-      study(test::named(run_of("transfer", "actor", {{"k", std::int64_t{3}}}, 1e-3)), {}, {}, {});
+      study(test::named(run_of("transfer", "actor", {{"k", std::int64_t{3}}}, 1e-3)), {});
   const MeshSequence& shown = metres.transfer->by_regions;
   EXPECT_NEAR(shown.diameter(), metres.sequence.diameter(), 1e-9 * shown.diameter());
   EXPECT_NEAR(metres.transfer->full.diameter(), shown.diameter(), 1e-9 * shown.diameter());
@@ -163,12 +163,12 @@ TEST(Report, ShowsATargetOfAnotherUnitAtTheSourcesSize) {
   EXPECT_GT(scale, 1000 / 1.2);
   EXPECT_LT(scale, 1000);
   EXPECT_TRUE(
-      holds(report_page(metres, {}, "", {}).html,
+      holds(report_page(metres, {}, "").html,
             "The target is shown " + std::to_string(std::lround(scale)) + " times its size"));
   const ReportStudy alike =
-      study(test::named(run_of("transfer", "actor", {{"k", std::int64_t{3}}}, 0.8)), {}, {}, {});
+      study(test::named(run_of("transfer", "actor", {{"k", std::int64_t{3}}}, 0.8)), {});
   EXPECT_EQ(alike.transfer->shown_scale, 1);
-  EXPECT_FALSE(holds(report_page(alike, {}, "", {}).html, "times its size"));
+  EXPECT_FALSE(holds(report_page(alike, {}, "").html, "times its size"));
 }
 
 TEST(Report, ShowsATargetOfOtherFaces) {
@@ -186,11 +186,11 @@ TEST(Report, ShowsATargetOfOtherFaces) {
   const BlendshapeModel mesh(std::make_shared<Connectivity>(target.connectivity), coarse.positions,
                              {{}, Eigen::MatrixXd(243, 0)});
   run.invocation.inputs["target"] = {{"actor", ModelData{MorphableModel(mesh)}}};
-  const ReportStudy shown = study(test::named(run), {}, {}, {});
+  const ReportStudy shown = study(test::named(run), {});
   EXPECT_EQ(shown.transfer->by_regions.vertices(), 81);
   ASSERT_EQ(shown.transfer->regions_of_vertices.size(), 81u);
   EXPECT_GE(std::ranges::max(shown.transfer->regions_of_vertices), 0);
-  EXPECT_FALSE(report_page(shown, {}, "", {}).html.empty());
+  EXPECT_FALSE(report_page(shown, {}, "").html.empty());
 }
 
 TEST(Report, OfAnEvaluatedPaintingHasItsRowsOnly) {
@@ -200,7 +200,7 @@ TEST(Report, OfAnEvaluatedPaintingHasItsRowsOnly) {
   std::ofstream(folder / "w.txt") << list;
   const RunRead run =
       run_of("evaluate", "actor", {{"paint", (folder / "w.txt").string()}, {"falloff", "0.2"}});
-  const ReportStudy found = study(test::named(run), {}, {}, {});
+  const ReportStudy found = study(test::named(run), {});
   const std::vector<EvaluationRow>& rows = found.transfer->rows;
   ASSERT_EQ(rows.size(), 2U);
   // Five rows of vertices are painted, and the border reaches beyond.
@@ -209,7 +209,7 @@ TEST(Report, OfAnEvaluatedPaintingHasItsRowsOnly) {
 }
 
 TEST(Report, SaysWhyItHasNoViewer) {
-  const ReportPage page = report_page(transfer_study(), {}, "", {});
+  const ReportPage page = report_page(transfer_study(), {}, "");
   EXPECT_EQ(page.viewer_frames, 0);
   EXPECT_TRUE(holds(page.html, "No 3D viewer: this mimetra was built without npm."));
   EXPECT_FALSE(holds(page.html, "<script"));
@@ -218,17 +218,17 @@ TEST(Report, SaysWhyItHasNoViewer) {
 TEST(Report, KeepsAnyLimit) {
   const ReportStudy& found = transfer_study();
   const std::string viewer(1000, ' ');
-  const ReportPage free = report_page(found, {}, viewer, {});
+  const ReportPage free = report_page(found, {}, viewer);
   ASSERT_EQ(free.viewer_frames, 24);
   const std::size_t limit = free.html.size() * 7 / 10;
-  const ReportPage kept = report_page(found, {}, viewer, {}, limit);
+  const ReportPage kept = report_page(found, {}, viewer, limit);
   EXPECT_LT(kept.html.size(), limit);
   EXPECT_GE(kept.viewer_frames, 2);
 }
 
 TEST(Report, NamesComponentsAsFilesDo) {
   const ReportStudy& found = regions_study();
-  const std::string page = report_page(found, {}, "", {}).html;
+  const std::string page = report_page(found, {}, "").html;
   const Region& first = found.regions.regions.front();
   EXPECT_TRUE(holds(page, "<tr><td>0</td><td>" + std::to_string(first.component) + "</td><td>" +
                               std::to_string(first.center) + "</td>"));
@@ -251,7 +251,7 @@ TEST(Report, ShowsWeightsWithoutComponents) {
 TEST(Report, QuotesTheRunForAShell) {
   ReportStudy found = regions_study();
   found.run.arguments = {"regions", "my take's.npy", "", "--k=3"};
-  EXPECT_TRUE(holds(report_page(found, {}, "", {}).html,
+  EXPECT_TRUE(holds(report_page(found, {}, "").html,
                     "mimetra regions &#39;my take&#39;\\&#39;&#39;s.npy&#39; &#39;&#39; --k=3<"));
 }
 

@@ -23,7 +23,7 @@ const MeshSequence& with_teeth() {
 /// How many of 30 regions lie on the face and not on its teeth, gums, tongue and lashes.
 long on_the_face(AnalysisOptions options) {
   // The places are settled by the start; more iterations only take longer.
-  options.decomposition.iterations = 1;
+  options.iterations = 1;
   const Source source = prepare_source(with_teeth(), {.head_motion = HeadMotion::none});
   const Regions regions = choose_regions(analyse(source, options));
   return std::ranges::count_if(regions.regions, [](const Region& region) {

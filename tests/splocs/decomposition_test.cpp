@@ -197,8 +197,8 @@ TEST(Decomposition, HasLessEnergyThanItsStart) {
   const MeshSequence sequence = restless_grid();
   const DecompositionOptions options = grid_options(sequence, 6);
   const LiteralProblem problem = literal_problem(sequence, options);
-  const Start start = greedy_start(VertexBlocks<double>(problem.X), one_by_one(problem.support),
-                                   options, Reduction(sequence.vertices()));
+  const Start start =
+      greedy_start(VertexBlocks<double>(problem.X), one_by_one(problem.support), options);
   const Frames C = start.components.frames();
   double energy = (problem.X - start.weights * C).squaredNorm();
   for (int k = 0; k < options.count; ++k) {
@@ -440,11 +440,12 @@ TEST(Decomposition, ProgressPromisesNoMoreThanIsDoneAndIsAllDoneWhereItConverges
   options.iterations = 1000;
   options.tolerance = 1e-3;
   std::vector<double> shares;
-  options.progress = [&shares](double share) {
+  const auto keep = [&shares](double share) {
     shares.push_back(share);
     return true;
   };
-  const std::size_t ran = decompose(sequence, options).energies.size();
+  const std::size_t ran =
+      decompose(sequence, options, Context().with_progress(keep)).energies.size();
   ASSERT_LT(ran, 20u);
   EXPECT_TRUE(std::ranges::is_sorted(shares));
   // The start is worth some iterations, and 980 of 1000 have not run.
@@ -457,18 +458,18 @@ TEST(Decomposition, ProgressRisesToOneAndCancelsWhereverItIsReported) {
   DecompositionOptions options = grid_options(sequence, 2);
   options.iterations = 2;
   std::vector<double> shares;
-  options.progress = [&shares](double share) {
+  const auto keep = [&shares](double share) {
     shares.push_back(share);
     return true;
   };
-  decompose(sequence, options);
+  decompose(sequence, options, Context().with_progress(keep));
   EXPECT_TRUE(std::ranges::is_sorted(shares));
   EXPECT_EQ(shares.front(), 0);
   EXPECT_EQ(shares.back(), 1);
   for (std::size_t allowed = 0; allowed < shares.size(); ++allowed) {
     std::size_t reports = 0;
-    options.progress = [&reports, allowed](double) { return reports++ < allowed; };
-    EXPECT_THROW(decompose(sequence, options), Cancelled) << allowed;
+    const auto stop = [&reports, allowed](double) { return reports++ < allowed; };
+    EXPECT_THROW(decompose(sequence, options, Context().with_progress(stop)), Cancelled) << allowed;
   }
 }
 

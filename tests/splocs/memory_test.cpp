@@ -21,20 +21,13 @@ const MeshSequence& long_take() {
   return take;
 }
 
-DecompositionPlan plan_of(const FrameSource& frames, const DecompositionOptions& options) {
-  return planned_decomposition(frames, VertexPart(frames.vertices()), options);
+DecompositionPlan plan_of(const FrameSource& frames, const DecompositionOptions& options,
+                          const Context& context = {}) {
+  return planned_decomposition(frames, VertexPart(frames.vertices()), options, context);
 }
 
 double motion_bytes(const FrameSource& frames) {
   return 24.0 * frames.frames() * frames.vertices();
-}
-
-/// As much as everything but the motion takes.
-DecompositionOptions within_less(DecompositionOptions options, const FrameSource& frames) {
-  DecompositionOptions without_basis = options;
-  without_basis.basis_tolerance = 0;
-  options.memory = plan_of(frames, without_basis).bytes - motion_bytes(frames) / 2;
-  return options;
 }
 
 void expect_same_bytes(const Components& found, const Components& expected) {
@@ -50,21 +43,29 @@ class MemoryTest : public testing::Test {
  protected:
   MemoryTest() : sequence_(long_take()), options_(grid_options(sequence_, 4)) {
     options_.iterations = 4;
-    options_.threads = 2;
+  }
+
+  /// With as much memory as everything but the motion takes.
+  Context within_less() const {
+    DecompositionOptions without_basis = options_;
+    without_basis.basis_tolerance = 0;
+    const double all = plan_of(sequence_, without_basis, context_).bytes;
+    return context_.with_memory(all - motion_bytes(sequence_) / 2);
   }
 
   /// Of frames in memory and of those that are read, whatever place the motion has.
   void expect_same_bytes_in(MotionPlace place) {
-    const Components expected = decompose(sequence_, options_);
-    ASSERT_EQ(plan_of(sequence_, options_).place, MotionPlace::memory);
-    const DecompositionOptions bounded = within_less(options_, sequence_);
-    ASSERT_EQ(plan_of(sequence_, bounded).place, place);
-    expect_same_bytes(decompose(sequence_, bounded), expected);
-    expect_same_bytes(decompose(*streamed(sequence_), bounded), expected);
+    const Components expected = decompose(sequence_, options_, context_);
+    ASSERT_EQ(plan_of(sequence_, options_, context_).place, MotionPlace::memory);
+    const Context bounded = within_less();
+    ASSERT_EQ(plan_of(sequence_, options_, bounded).place, place);
+    expect_same_bytes(decompose(sequence_, options_, bounded), expected);
+    expect_same_bytes(decompose(*streamed(sequence_), options_, bounded), expected);
   }
 
   MeshSequence sequence_;
   DecompositionOptions options_;
+  Context context_ = Context().with_threads(2);
 };
 
 TEST_F(MemoryTest, DoesNotChangeTheResult) {
@@ -82,10 +83,11 @@ TEST_F(MemoryTest, DoesNotChangeTheResultInABasisOfTime) {
   options_.iterations = 4;
   options_.basis_tolerance = 0.3;
   const Components expected = decompose(sequence_, options_);
-  options_.memory = plan_of(sequence_, options_).bytes - 0.05 * motion_bytes(sequence_);
-  ASSERT_EQ(plan_of(sequence_, options_).place, MotionPlace::scratch);
-  expect_same_bytes(decompose(sequence_, options_), expected);
-  expect_same_bytes(decompose(*streamed(sequence_), options_), expected);
+  const Context bounded =
+      Context().with_memory(plan_of(sequence_, options_).bytes - 0.05 * motion_bytes(sequence_));
+  ASSERT_EQ(plan_of(sequence_, options_, bounded).place, MotionPlace::scratch);
+  expect_same_bytes(decompose(sequence_, options_, bounded), expected);
+  expect_same_bytes(decompose(*streamed(sequence_), options_, bounded), expected);
   // It is one in a basis.
   options_ = grid_options(sequence_, 4);
   options_.iterations = 4;
@@ -96,10 +98,10 @@ TEST_F(MemoryTest, IsRefusedWhereItDoesNotHoldABasisOfTime) {
   options_.basis_tolerance = 0.3;
   DecompositionOptions short_one = options_;
   short_one.iterations = 1;
-  ASSERT_NO_THROW(decompose(sequence_, short_one));
-  const DecompositionOptions bounded = within_less(options_, sequence_);
-  ASSERT_LT(plan_of(sequence_, bounded).poses, 12);
-  EXPECT_THAT([&] { decompose(sequence_, bounded); },
+  ASSERT_NO_THROW(decompose(sequence_, short_one, context_));
+  const Context bounded = within_less();
+  ASSERT_LT(plan_of(sequence_, options_, bounded).poses, 12);
+  EXPECT_THAT([&] { decompose(sequence_, options_, bounded); },
               ThrowsMessage<MismatchError>(HasSubstr("option 'basis-tolerance': ")));
 }
 
@@ -109,18 +111,16 @@ TEST_F(MemoryTest, DoesNotChangeTheResultWhereTheSequenceIsReadAgain) {
   options_.iterations = 1;
   expect_same_bytes_in(MotionPlace::sequence);
   // Of a stream no vertices can be read.
-  EXPECT_EQ(plan_of(*streamed(sequence_), within_less(options_, sequence_)).place,
-            MotionPlace::scratch);
+  EXPECT_EQ(plan_of(*streamed(sequence_), options_, within_less()).place, MotionPlace::scratch);
 }
 
 TEST_F(MemoryTest, DoesNotChangeTheError) {
   DecompositionOptions short_one = options_;
   short_one.iterations = 1;
-  const Components components = decompose(sequence_, short_one);
-  const DecompositionError expected = decomposition_error(sequence_, components);
-  Components bounded = components;
-  bounded.options = within_less(options_, sequence_);
-  const DecompositionError found = decomposition_error(*streamed(sequence_), bounded);
+  const Components components = decompose(sequence_, short_one, context_);
+  const DecompositionError expected = decomposition_error(sequence_, components, context_);
+  const DecompositionError found =
+      decomposition_error(*streamed(sequence_), components, within_less());
   EXPECT_EQ(found.rms, expected.rms);
   EXPECT_EQ(found.kg, expected.kg);
   EXPECT_EQ(found.sparsity, expected.sparsity);
@@ -128,10 +128,10 @@ TEST_F(MemoryTest, DoesNotChangeTheError) {
 
 TEST_F(MemoryTest, IsNeverMoreThanAllowed) {
   for (const double less : {0.0, 0.2, 0.7, 1.0}) {
-    DecompositionOptions bounded = options_;
-    bounded.memory = plan_of(sequence_, options_).bytes - less * motion_bytes(sequence_);
-    const DecompositionPlan plan = plan_of(sequence_, bounded);
-    EXPECT_LE(plan.bytes, *bounded.memory);
+    const double allowed =
+        plan_of(sequence_, options_, context_).bytes - less * motion_bytes(sequence_);
+    const DecompositionPlan plan = plan_of(sequence_, options_, context_.with_memory(allowed));
+    EXPECT_LE(plan.bytes, allowed);
     EXPECT_EQ(plan.scratch_bytes, plan.place == MotionPlace::scratch ? motion_bytes(sequence_) : 0);
   }
 }
@@ -146,23 +146,22 @@ TEST_F(MemoryTest, CountsThePosesOfABasisOfTime) {
   // Each is at least a course over time and a shape, twice.
   EXPECT_GE(all.bytes, without + 50 * 16.0 * (100 + 3 * sequence_.vertices()));
   for (const double share : {0.2, 0.6, 0.9, 1.0}) {
-    DecompositionOptions bounded = options_;
-    bounded.memory = without + share * (all.bytes - without);
-    const DecompositionPlan plan = plan_of(sequence_, bounded);
-    EXPECT_LE(plan.bytes, *bounded.memory);
+    const double allowed = without + share * (all.bytes - without);
+    const DecompositionPlan plan = plan_of(sequence_, options_, Context().with_memory(allowed));
+    EXPECT_LE(plan.bytes, allowed);
     EXPECT_GT(plan.poses, 0);
   }
 }
 
 TEST_F(MemoryTest, HoldsFewerThreadsWhereThereIsLess) {
-  options_.threads = 8;
-  const double without_motion = plan_of(sequence_, options_).bytes - motion_bytes(sequence_);
+  context_ = context_.with_threads(8);
+  const double without_motion =
+      plan_of(sequence_, options_, context_).bytes - motion_bytes(sequence_);
   int threads = 8;
   for (const double less : {0.1, 0.2, 0.3, 0.4}) {
-    DecompositionOptions bounded = options_;
     // Each thread holds two of 79 blocks.
-    bounded.memory = without_motion - less * 8 * 2 / 79 * motion_bytes(sequence_);
-    const DecompositionPlan plan = plan_of(sequence_, bounded);
+    const double allowed = without_motion - less * 8 * 2 / 79 * motion_bytes(sequence_);
+    const DecompositionPlan plan = plan_of(sequence_, options_, context_.with_memory(allowed));
     EXPECT_LE(plan.threads, threads);
     threads = plan.threads;
   }
@@ -170,8 +169,7 @@ TEST_F(MemoryTest, HoldsFewerThreadsWhereThereIsLess) {
 }
 
 TEST_F(MemoryTest, IsRefusedWhereItHoldsNotOneBlock) {
-  options_.memory = 1e6;
-  EXPECT_THAT([this] { decompose(sequence_, options_); },
+  EXPECT_THAT([this] { decompose(sequence_, options_, context_.with_memory(1e6)); },
               ThrowsMessage<MismatchError>(
                   AllOf(HasSubstr("option 'memory': what is left of it, 1 MB, does not hold a "
                                   "decomposition of 24 frames into 4 components; allow at least"),

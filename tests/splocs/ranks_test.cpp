@@ -33,13 +33,14 @@ MeshSequence points_of(const VertexPart& part, const MeshSequence& sequence) {
 
 /// What each rank returns.
 std::vector<Components> decomposed_on(int ranks, const MeshSequence& sequence,
-                                      const DecompositionOptions& options) {
+                                      const DecompositionOptions& options,
+                                      const Context& context = {}) {
   std::vector<Components> parts(ranks);
   on_ranks(ranks, [&](const Ranks& rank) {
     const VertexPart part(sequence.vertices(), rank.rank(), ranks);
     const MeshSequence points = points_of(part, sequence);
-    parts[rank.rank()] =
-        decompose_part({sequence.rest(), sequence.triangles(), points}, options, rank);
+    parts[rank.rank()] = decompose_part({sequence.rest(), sequence.triangles(), points}, options,
+                                        context.with_ranks(rank));
   });
   return parts;
 }
@@ -163,13 +164,12 @@ TEST(Ranks, DecomposeToTheSameBytesWithSeveralBlocksInARun) {
 
 TEST(Ranks, OfAnyNumberOfThreadsDecomposeToTheSameBytes) {
   const MeshSequence sequence = many_blocks();
-  DecompositionOptions options = grid_options(sequence, 5);
-  options.threads = 1;
-  const Components whole = decompose(sequence, options);
+  const DecompositionOptions options = grid_options(sequence, 5);
+  const Components whole = decompose(sequence, options, Context().with_threads(1));
   for (const int threads : {2, 5}) {
-    options.threads = threads;
-    expect_equal({decompose(sequence, options)}, whole);
-    expect_equal(decomposed_on(2, sequence, options), whole);
+    const Context context = Context().with_threads(threads);
+    expect_equal({decompose(sequence, options, context)}, whole);
+    expect_equal(decomposed_on(2, sequence, options, context), whole);
   }
 }
 
@@ -179,13 +179,13 @@ TEST(Ranks, SendInAnIterationWhatTheDocumentationSays) {
   DecompositionOptions options = grid_options(sequence, 3);
   const auto numbers_in = [&](int ranks, int iterations) {
     options.iterations = iterations;
-    return on_ranks(
-               ranks,
-               [&](const Ranks& rank) {
-                 const VertexPart part(sequence.vertices(), rank.rank(), ranks);
-                 const MeshSequence points = points_of(part, sequence);
-                 decompose_part({sequence.rest(), sequence.triangles(), points}, options, rank);
-               })
+    return on_ranks(ranks,
+                    [&](const Ranks& rank) {
+                      const VertexPart part(sequence.vertices(), rank.rank(), ranks);
+                      const MeshSequence points = points_of(part, sequence);
+                      decompose_part({sequence.rest(), sequence.triangles(), points}, options,
+                                     Context().with_ranks(rank));
+                    })
         .numbers;
   };
   const std::size_t F = 8, K = 3;
@@ -221,11 +221,12 @@ TEST(Ranks, MeasureTheSameError) {
   ASSERT_GT(whole.sparsity, 0);
   for (const int ranks : {2, 3}) {
     on_ranks(ranks, [&](const Ranks& rank) {
-      const Reduction reduction(sequence.vertices(), 1, &rank);
-      const MeshSequence points = points_of(reduction.part(), sequence);
+      const Context context = Context().with_threads(1).with_ranks(rank);
+      const MeshSequence points =
+          points_of(VertexPart(sequence.vertices(), rank.rank(), ranks), sequence);
       const SequencePart part{sequence.rest(), sequence.triangles(), points};
       const DecompositionError error =
-          decomposition_error(part, decompose_part(part, options, rank), reduction);
+          decomposition_error(part, decompose_part(part, options, context), context);
       EXPECT_EQ(error.rms, whole.rms);
       EXPECT_EQ(error.relative_rms, whole.relative_rms);
       EXPECT_EQ(error.kg, whole.kg);
@@ -241,13 +242,14 @@ TEST(Ranks, ReadTheirOwnVerticesOfASharedSequence) {
   const DecompositionError error = decomposition_error(sequence, whole);
   for (const int ranks : {2, 3}) {
     on_ranks(ranks, [&](const Ranks& rank) {
-      const Components found = decompose(sequence, options, rank);
+      const Context context = Context().with_ranks(rank);
+      const Components found = decompose(sequence, options, context);
       EXPECT_TRUE(equal_bytes(found.displacements, whole.displacements));
       EXPECT_TRUE(equal_bytes(found.support, whole.support));
       EXPECT_TRUE(equal_bytes(found.weights, whole.weights));
       EXPECT_EQ(found.centers, whole.centers);
       EXPECT_EQ(found.energies, whole.energies);
-      EXPECT_EQ(decomposition_error(sequence, found, rank).rms, error.rms);
+      EXPECT_EQ(decomposition_error(sequence, found, context).rms, error.rms);
     });
   }
 }
@@ -267,7 +269,7 @@ TEST(Ranks, ComputeEachDistanceOnce) {
   options.distances = counted(alone);
   decompose(sequence, options);
   options.distances = counted(together);
-  on_ranks(3, [&](const Ranks& rank) { decompose(sequence, options, rank); });
+  on_ranks(3, [&](const Ranks& rank) { decompose(sequence, options, Context().with_ranks(rank)); });
   EXPECT_EQ(together, alone);
 }
 
@@ -289,7 +291,7 @@ std::vector<std::string> messages_on(
     change(rank.rank(), given);
     try {
       decompose_part({given.rest, sequence.triangles(), points_of(given.frames)},
-                     grid_options(sequence, 2), rank);
+                     grid_options(sequence, 2), Context().with_ranks(rank));
     } catch (const Error& error) {
       messages[rank.rank()] = error.what();
     }
@@ -373,18 +375,17 @@ TEST(Ranks, RefuseOtherMeshesAlike) {
 TEST(Ranks, FindTheSameBasisOfTime) {
   const MeshSequence sequence = many_blocks();
   const Frames X = sequence.positions();
-  const auto whole =
-      time_basis(VertexBlocks<double>(X), X.squaredNorm(), 0.1, Reduction(sequence.vertices()));
+  const auto whole = time_basis(VertexBlocks<double>(X), X.squaredNorm(), 0.1, X.rows());
   ASSERT_TRUE(whole);
   on_ranks(3, [&](const Ranks& rank) {
-    const Reduction reduction(sequence.vertices(), 1, &rank);
-    const VertexPart& part = reduction.part();
+    const VertexPart part(sequence.vertices(), rank.rank(), 3);
     VertexBlocks<double> own(X.rows(), part);
     const VertexBlocks<double> all(X);
     for (int b = 0; b < own.count(); ++b) {
       own[b] = all[b + static_cast<int>(part.first() / VertexPart::kBlock)];
     }
-    const auto basis = time_basis(own, X.squaredNorm(), 0.1, reduction);
+    const auto basis =
+        time_basis(own, X.squaredNorm(), 0.1, X.rows(), Context().with_threads(1).with_ranks(rank));
     ASSERT_TRUE(basis);
     EXPECT_TRUE(equal_bytes(basis->Q, whole->Q));
     EXPECT_TRUE(equal_bytes(basis->B.frames(),

@@ -53,6 +53,11 @@ Eigen::MatrixXd root_of(const Tree& tree, const Reduction& reduction) {
       });
 }
 
+/// One thread of a rank.
+Context alone_in(const Ranks& rank) {
+  return Context().with_threads(1).with_ranks(rank);
+}
+
 TEST(VertexPart, PartsOfAllRanksAreTheMesh) {
   for (Eigen::Index vertices = 1; vertices < 70 * kBlock; vertices += 101) {
     for (const int ranks : {1, 2, 3, 7, 64, 70}) {
@@ -99,11 +104,13 @@ TEST(Reduction, JoinsAlongOneTreeForEveryNumberOfRanksAndThreads) {
   for (int blocks = 1; blocks <= 200; ++blocks) {
     const double expected = literal_root(std::min(64, blocks), kShapes);
     for (const int threads : {1, 3}) {
-      EXPECT_EQ(root_of(kShapes, Reduction(blocks * kBlock, threads))(0), expected);
+      EXPECT_EQ(root_of(kShapes, Reduction(blocks * kBlock, Context().with_threads(threads)))(0),
+                expected);
     }
     for (const int ranks : {2, 3, 4, 7}) {
       on_ranks(ranks, [&](const Ranks& rank) {
-        const Eigen::MatrixXd root = root_of(kShapes, Reduction(blocks * kBlock, 2, &rank));
+        const Context context = Context().with_threads(2).with_ranks(rank);
+        const Eigen::MatrixXd root = root_of(kShapes, Reduction(blocks * kBlock, context));
         if (rank.rank() == 0) {
           EXPECT_EQ(root(0), expected) << blocks << " blocks on " << ranks;
         } else {
@@ -119,7 +126,7 @@ TEST(Reduction, GivesTheSameBitsWhereverRanksPartTheRuns) {
   const double expected = literal_root(50, kSums);
   for (int ranks = 1; ranks <= 53; ++ranks) {
     on_ranks(ranks, [&](const Ranks& rank) {
-      const Reduction reduction(50 * kBlock, 1, &rank);
+      const Reduction reduction(50 * kBlock, alone_in(rank));
       const Eigen::MatrixXd sum = reduction.everywhere(
           reduction.sum(1, 1, [](int run, Eigen::MatrixXd& leaf) { leaf(0) = kSums.leaf(run); }));
       EXPECT_EQ(sum(0), expected) << ranks << " ranks";
@@ -134,14 +141,14 @@ TEST(Reduction, GivesTheSameBitsWhereverRanksPartTheRuns) {
 TEST(Reduction, OfAPowerOfTwoRanksSendsOneMatrixEach) {
   for (const int ranks : {1, 2, 4, 8, 16}) {
     const Traffic sent = on_ranks(
-        ranks, [](const Ranks& rank) { root_of(kShapes, Reduction(64 * kBlock, 1, &rank)); });
+        ranks, [](const Ranks& rank) { root_of(kShapes, Reduction(64 * kBlock, alone_in(rank))); });
     EXPECT_EQ(sent.messages, ranks - 1);
   }
 }
 
 TEST(Reduction, GivesAllRanksWhatOneHas) {
   on_ranks(3, [](const Ranks& rank) {
-    const Reduction reduction(10 * kBlock, 1, &rank);
+    const Reduction reduction(10 * kBlock, alone_in(rank));
     for (int from = 0; from < 3; ++from) {
       const Eigen::MatrixXd given = reduction.on(from, [&]() -> Eigen::MatrixXd {
         EXPECT_EQ(rank.rank(), from);
@@ -163,7 +170,7 @@ TEST(Reduction, OfNoVerticesIsZero) {
 std::vector<VertexIndex> argmax_on(int ranks, const Eigen::MatrixXd& values, int threads = 1) {
   std::vector<std::vector<VertexIndex>> found(ranks);
   on_ranks(ranks, [&](const Ranks& rank) {
-    const Reduction reduction(values.cols(), threads, &rank);
+    const Reduction reduction(values.cols(), Context().with_threads(threads).with_ranks(rank));
     const VertexPart& part = reduction.part();
     found[rank.rank()] = reduction.argmax(static_cast<int>(values.rows()), [&](int b) {
       return Eigen::MatrixXd(values.middleCols(part.first() + part.first_of(b), part.size_of(b)));
@@ -213,7 +220,7 @@ TEST(Argmax, OfAnyNumberOfThreadsAndRanksIsTheFirstThatTiesWithTheLargest) {
 }
 
 TEST(Argmax, AsksForTheValuesOfABlockOnce) {
-  const Reduction reduction(80 * kBlock, 1);
+  const Reduction reduction(80 * kBlock, Context().with_threads(1));
   std::vector<int> asked(80);
   // One row has no value above 0, the other its largest in every block.
   reduction.argmax(2, [&asked](int b) -> Eigen::MatrixXd {

@@ -82,7 +82,7 @@ TEST_F(ReferenceDecomposition, StartsAtTheSameCentersWithTheSameComponentsAndWei
   const Start start = greedy_start(
       VertexBlocks<double>(X),
       support_function(options_.distances, sequence_.vertices(), *options_.d_min, *options_.d_max),
-      options_, Reduction(sequence_.vertices()));
+      options_);
   const NpyArray centers = read("centres_init");
   EXPECT_TRUE(std::ranges::equal(start.centers, centers.values));
   const Frames W = as_matrix(read("W_init")), C = as_matrix(read("C_init"));

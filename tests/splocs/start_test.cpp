@@ -50,7 +50,7 @@ SupportFunction around_one_bump(const Bumps& bumps) {
 /// Of the motion of all vertices.
 Start start_of(const Frames& X, const SupportFunction& support,
                const DecompositionOptions& options) {
-  return greedy_start(VertexBlocks<double>(X), support, options, Reduction(X.cols() / 3));
+  return greedy_start(VertexBlocks<double>(X), support, options);
 }
 
 TEST(GreedyStart, ExplainsDisjointBumpsCompletelyAndStopsWhereNothingIsLeft) {

@@ -101,14 +101,14 @@ TEST(SurfaceDistances, OfTheLatestSourcesAreKeptAsFarAsTheyAreAllowedTo) {
   const SurfaceDistances all(shape.positions, shape.triangles, weld);
   const std::vector<VertexIndex> requests = {3, 9, 3, 40, 3, 9, 40};
   // Two fit; 40 is computed while 9 is the one that was asked for longest ago.
-  const SurfaceDistances two(shape.positions, shape.triangles, weld, GeodesicMethod::heat, 0,
+  const SurfaceDistances two(shape.positions, shape.triangles, weld, GeodesicMethod::heat,
                              2 * 45 * sizeof(double));
   const std::vector<int> computed = {1, 2, 2, 3, 3, 4, 5};
   for (std::size_t i = 0; i < requests.size(); ++i) {
     EXPECT_EQ(two(requests[i]), all(requests[i]));
     EXPECT_EQ(two.computed(), computed[i]) << i;
   }
-  const SurfaceDistances none(shape.positions, shape.triangles, weld, GeodesicMethod::heat, 0, 0);
+  const SurfaceDistances none(shape.positions, shape.triangles, weld, GeodesicMethod::heat, 0);
   EXPECT_EQ(none(requests), all(requests));
   EXPECT_EQ(none(requests), all(requests));
   EXPECT_EQ(none.computed(), 6);

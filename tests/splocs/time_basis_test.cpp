@@ -27,8 +27,8 @@ Frames fading_motion(int rank) {
 }
 
 std::optional<TimeBasis> basis_of(const Frames& X, double tolerance, int threads) {
-  return time_basis(VertexBlocks<double>(X), X.squaredNorm(), tolerance,
-                    Reduction(X.cols() / 3, threads));
+  return time_basis(VertexBlocks<double>(X), X.squaredNorm(), tolerance, X.rows(),
+                    Context().with_threads(threads));
 }
 
 double lost_share(const Frames& X, const TimeBasis& basis) {
@@ -79,17 +79,18 @@ TEST(TimeBasis, IsNoneWhereEveryFrameIsNew) {
 TEST(TimeBasis, TellsHowFarItIsAndStops) {
   const Frames X = Frames::Random(kFrames, 600);
   const VertexBlocks<double> blocks(X);
-  const Reduction reduction(200, 2);
+  const Context context = Context().with_threads(2);
   double done = 0;
   const auto rising = [&done](double share) {
     EXPECT_GE(share, done);
     done = share;
     return true;
   };
-  EXPECT_FALSE(time_basis(blocks, X.squaredNorm(), 0.01, reduction, kFrames, rising));
+  EXPECT_FALSE(time_basis(blocks, X.squaredNorm(), 0.01, kFrames, context.with_progress(rising)));
   EXPECT_EQ(done, 1);
   const auto stop = [](double share) { return share < 0.5; };
-  EXPECT_THROW(time_basis(blocks, X.squaredNorm(), 0.01, reduction, kFrames, stop), Cancelled);
+  EXPECT_THROW(time_basis(blocks, X.squaredNorm(), 0.01, kFrames, context.with_progress(stop)),
+               Cancelled);
 }
 
 TEST(TimeBasis, DoesNotDependOnThreads) {

@@ -35,7 +35,7 @@ TEST(VertexBlocks, RoundToSinglePrecision) {
 
 Motion motion_of(const MeshSequence& sequence, MotionScale scale) {
   return scaled_motion({sequence.rest(), sequence.triangles(), sequence}, scale,
-                       Reduction(sequence.vertices(), 2));
+                       Reduction(sequence.vertices(), Context().with_threads(2)));
 }
 
 Frames frames_of(const Motion& motion) {

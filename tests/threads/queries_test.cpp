@@ -42,7 +42,7 @@ TEST(Queries, OfExactGeodesicsMayMeet) {
 TEST(Queries, OfSurfaceDistancesShareWhatTheyKnow) {
   const test::Shape shape = test::sphere(2);
   const SurfaceDistances distances(shape.positions, shape.triangles, Weld::exact(shape.positions),
-                                   GeodesicMethod::heat, 2);
+                                   GeodesicMethod::heat, Context().with_threads(2));
   const std::vector<VertexIndex> sources = {5, 6, 7, 8};
   expect_one_answer([&] { return distances(sources); });
   EXPECT_EQ(distances.computed(), 4);
@@ -57,16 +57,17 @@ TEST(Queries, OfTransfersMayMeet) {
                               {{"up", "aside"}, (shapes.rowwise() - rest).transpose()});
   std::vector<int> all(static_cast<std::size_t>(take.triangles().rows()));
   std::iota(all.begin(), all.end(), 0);
-  const BlendshapeTransfer to_weights(take.rest(), actor, all, {.threads = 2});
-  expect_one_answer([&] { return to_weights.weights(take); });
+  const Context context = Context().with_threads(2);
+  const BlendshapeTransfer to_weights(take.rest(), actor, all, {}, context);
+  expect_one_answer([&] { return to_weights.weights(take, context); });
 }
 
 TEST(ParallelKernels, FindTheSameComponentsAndRegions) {
   const MeshSequence take = test::bulging_sphere(24);
   const auto found = [&take](int threads) {
-    const Components components =
-        decompose(take, {.count = 2, .iterations = 2, .threads = threads});
-    return find_regions(components, {.threads = threads}).triangles;
+    const Context context = Context().with_threads(threads);
+    const Components components = decompose(take, {.count = 2, .iterations = 2}, context);
+    return find_regions(components, {}, context).triangles;
   };
   EXPECT_EQ(found(kTogether), found(1));
 }

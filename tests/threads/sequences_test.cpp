@@ -15,6 +15,8 @@ using test::together;
 
 constexpr int kFrames = 16;
 
+const Context kTwoThreads = Context().with_threads(2);
+
 /// A file, or a folder where the format's files hold one mesh each.
 std::string output_of(const SequenceFormat& format) {
   const std::string& extension = format.extensions.front();
@@ -22,7 +24,7 @@ std::string output_of(const SequenceFormat& format) {
 }
 
 SequenceWriteOptions options_of(const SequenceFormat& format) {
-  SequenceWriteOptions options{.overwrite = true, .threads = 2};
+  SequenceWriteOptions options{.overwrite = true};
   const std::string extension = format.extensions.front().substr(1);
   for (const MeshFormat mesh : {MeshFormat::obj, MeshFormat::off, MeshFormat::stl}) {
     if (choice_name(mesh) == extension) options.format = mesh;
@@ -35,8 +37,8 @@ TEST(SequencesOfEveryFormat, AreReadByThreadsAtOnce) {
   const MeshSequence take = test::bulging_sphere(kFrames);
   for (const SequenceFormat& format : sequence_formats()) {
     const std::filesystem::path target = folder / output_of(format);
-    write_sequence(take, target, options_of(format));
-    const auto frames = open_sequence(target.string(), {.threads = 2}).frames;
+    write_sequence(take, target, options_of(format), {}, kTwoThreads);
+    const auto frames = open_sequence(target.string(), {}, kTwoThreads).frames;
     const Frames expected = frames->read(0, kFrames);
     together([&](int i) {
       for (int f = 0; f < kFrames; ++f) {
@@ -54,7 +56,7 @@ TEST(SequencesOfEveryFormat, OfThreadsThatWriteOneOutputOneWinsWhole) {
     const std::filesystem::path target = folder / output_of(format);
     together([&](int i) {
       const Frames poses = take.positions() * (i + 1);
-      write_sequence(take.with_frames(poses), target, options_of(format));
+      write_sequence(take.with_frames(poses), target, options_of(format), {}, kTwoThreads);
     });
     const Frames found = read_sequence(target.string()).sequence.positions();
     const bool is_one_of_them = std::ranges::any_of(std::array{1, 2, 3, 4}, [&](double scale) {

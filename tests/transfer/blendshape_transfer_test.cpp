@@ -259,9 +259,9 @@ TEST(BlendshapeTransfer, RefusesTrianglesInWhichNothingMoves) {
 
 TEST(BlendshapeTransfer, StopsWhenAsked) {
   const BlendshapeModel model = model_on(patch(), 3);
-  const BlendshapeTransfer transfer(model.neutral(), model, all_triangles(model.triangles()),
-                                    {.progress = [](double) { return false; }});
-  EXPECT_THROW(transfer.weights(model.animate(random_weights(40, 3))), Cancelled);
+  const BlendshapeTransfer transfer(model.neutral(), model, all_triangles(model.triangles()));
+  const Context cancelled = Context().with_progress([](double) { return false; });
+  EXPECT_THROW(transfer.weights(model.animate(random_weights(40, 3)), cancelled), Cancelled);
 }
 
 TEST(BlendshapeTransfer, BendsLessWithSmoothness) {

@@ -158,7 +158,7 @@ TEST(BorderCrease, AgreesWithTheLiteralMeasure) {
   const TransferError expected = literal_crease(source, result, weights);
   for (const int threads : {1, 3}) {
     const TransferError found =
-        transfer_error(source, result, {0}, {.weights = weights, .threads = threads});
+        transfer_error(source, result, {0}, {.weights = weights}, Context().with_threads(threads));
     // acos is worst near flat: its rounding is that of the root of 1e-16, in degrees.
     EXPECT_NEAR(found.crease, expected.crease, 1e-6);
     EXPECT_NEAR(found.largest_crease, expected.largest_crease, 1e-6);

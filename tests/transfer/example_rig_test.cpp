@@ -247,8 +247,8 @@ TEST_F(ExampleRigTest, MovesVerticesThatAreOneAsOne) {
 
 TEST_F(ExampleRigTest, GivesEqualBytesForAnyNumberOfThreads) {
   const std::vector<RigExample> examples = {{"one", odd_pose(0.5), 1}, {"pose", odd_pose(0.2), {}}};
-  const ExampleRig one = fit_to_examples(model_, examples, apart_, {.threads = 1});
-  const ExampleRig three = fit_to_examples(model_, examples, apart_, {.threads = 3});
+  const ExampleRig one = fit_to_examples(model_, examples, apart_, {}, Context().with_threads(1));
+  const ExampleRig three = fit_to_examples(model_, examples, apart_, {}, Context().with_threads(3));
   EXPECT_EQ(one.displacements, three.displacements);
   EXPECT_EQ(one.weights, three.weights);
 }

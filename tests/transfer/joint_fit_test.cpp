@@ -66,9 +66,9 @@ TEST(JointFit, DoesNotDependOnThreads) {
   const MeshSequence moved =
       with_motion(model.animate(test::random_weights(kFrames, kExpressions)), turns());
   const auto found = [&](int threads) {
-    const JointFit fit(model.neutral(), model, all_triangles(model.triangles()),
-                       {.threads = threads});
-    return fit(moved, std::vector<RigidTransform>(kFrames));
+    const Context context = Context().with_threads(threads);
+    const JointFit fit(model.neutral(), model, all_triangles(model.triangles()), {}, context);
+    return fit(moved, std::vector<RigidTransform>(kFrames), context);
   };
   const HeadAndExpressions one = found(1), three = found(3);
   EXPECT_TRUE(one.weights == three.weights);

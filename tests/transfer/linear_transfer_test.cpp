@@ -147,12 +147,14 @@ TEST_F(LinearTransferTest, IsSmoothWithinAnyBounds) {
 }
 
 TEST_F(LinearTransferTest, IsEqualBytesForEveryNumberOfThreads) {
-  const Retargeting one = linear_transfer(source_, target_, all_, {.threads = 1});
-  const Eigen::MatrixXd weights = retargeted(one, weights_, times_, {.threads = 1});
+  const Context alone = Context().with_threads(1);
+  const Retargeting one = linear_transfer(source_, target_, all_, {}, alone);
+  const Eigen::MatrixXd weights = retargeted(one, weights_, times_, {}, alone);
   for (const int threads : {2, 3, 8}) {
-    const Retargeting map = linear_transfer(source_, target_, all_, {.threads = threads});
+    const Context context = Context().with_threads(threads);
+    const Retargeting map = linear_transfer(source_, target_, all_, {}, context);
     EXPECT_TRUE(map.linear == one.linear);
-    EXPECT_TRUE(retargeted(map, weights_, times_, {.threads = threads}) == weights);
+    EXPECT_TRUE(retargeted(map, weights_, times_, {}, context) == weights);
   }
 }
 

@@ -33,8 +33,8 @@ class LocalWeightsTest : public testing::Test {
   }
 
   BlendshapeTransfer whole() const { return {source_.rest(), actor_, all_}; }
-  LocalWeights local(const LocalWeightsOptions& options = {}) const {
-    return {source_.rest(), actor_, shares_, all_, options};
+  LocalWeights local(const LocalWeightsOptions& options = {}, const Context& context = {}) const {
+    return {source_.rest(), actor_, shares_, all_, options, context};
   }
   RegionalAnimation animated(const RegionalWeights& weights) const {
     return {std::make_shared<const BlendshapeModel>(actor_), shares_, weights.beta};
@@ -161,10 +161,14 @@ TEST_F(LocalWeightsTest, AreExactlyZeroAtRest) {
 
 TEST_F(LocalWeightsTest, AreTheSameBytesForAnyThreadsStreamsAndProcessors) {
   const Eigen::MatrixXd global = whole().weights(source_);
-  const Eigen::MatrixXd one = local({.threads = 1}).weights(source_, global).beta;
+  const Context alone = Context().with_threads(1);
+  const LocalWeights by_one = local({}, alone);
+  const Eigen::MatrixXd one = by_one.weights(source_, global, alone).beta;
   for (const int threads : {2, 3}) {
-    EXPECT_TRUE(local({.threads = threads}).gram() == local({.threads = 1}).gram());
-    EXPECT_TRUE(local({.threads = threads}).weights(source_, global).beta == one);
+    const Context context = Context().with_threads(threads);
+    const LocalWeights by_several = local({}, context);
+    EXPECT_TRUE(by_several.gram() == by_one.gram());
+    EXPECT_TRUE(by_several.weights(source_, global, context).beta == one);
   }
   EXPECT_TRUE(local().weights(test::Stream(source_), global).beta == one);
   test::expect_equal_bytes_on_each_processor([&] { return local().weights(source_, global).beta; });

@@ -32,8 +32,8 @@ class RegionSelectionTest : public testing::Test {
         {.radius = radius, .count = count});
   }
 
-  RegionSelection selection(int threads = 0) const {
-    return {take_, actor_, {.noise = kNoise, .threads = threads}};
+  RegionSelection selection(const Context& context = {}) const {
+    return {take_, actor_, {.noise = kNoise}, context};
   }
 
   static std::vector<int> joined(const std::vector<int>& some, const std::vector<int>& more) {
@@ -194,10 +194,12 @@ TEST_F(RegionSelectionTest, RefusesABoundOutOfRange) {
 
 TEST_F(RegionSelectionTest, DoesNotDependOnThreads) {
   const std::vector<Disc> discs = this->discs();
-  const RegionSelection one = selection(1);
+  const Context alone = Context().with_threads(1);
+  const RegionSelection one = selection(alone);
   for (const int threads : {2, 5}) {
-    const RegionSelection several = selection(threads);
-    EXPECT_EQ(several.choose(discs), one.choose(discs));
+    const Context context = Context().with_threads(threads);
+    const RegionSelection several = selection(context);
+    EXPECT_EQ(several.choose(discs, {}, context), one.choose(discs, {}, alone));
     EXPECT_EQ(several.criterion(all_), one.criterion(all_));
   }
 }

@@ -22,8 +22,9 @@ class RuledWeightsTest : public testing::Test {
     return {test::connectivity_of(shape), shape.positions, basis};
   }
 
-  Eigen::MatrixXd weights(const BlendshapeTransferOptions& options) const {
-    return transfer(options).weights(take_);
+  Eigen::MatrixXd weights(const BlendshapeTransferOptions& options,
+                          const Context& context = {}) const {
+    return transfer(options).weights(take_, context);
   }
 
   BlendshapeTransfer transfer(const BlendshapeTransferOptions& options) const {
@@ -115,10 +116,8 @@ TEST_F(RuledWeightsTest, KeepRulesWithSmoothness) {
 TEST_F(RuledWeightsTest, AreTheSameBytesForAnyThreads) {
   BlendshapeTransferOptions options{.symmetry = 1, .exclusive = Exclusive::eyes};
   options.rules.exclusive = {{"jawOpen", "smile_L", "smile_R"}};
-  options.threads = 1;
-  const Eigen::MatrixXd one = weights(options);
-  options.threads = 3;
-  EXPECT_EQ(weights(options), one);
+  const Eigen::MatrixXd one = weights(options, Context().with_threads(1));
+  EXPECT_EQ(weights(options, Context().with_threads(3)), one);
 }
 
 TEST_F(RuledWeightsTest, LeaveOutPairsOfWhichOneIsNotSeen) {

@@ -56,9 +56,8 @@ class ProductBlocking : public SameBytes {};
 
 TEST_F(Threads, DoNotChangeADecomposition) {
   const auto components = [&](int threads) {
-    return decompose(
-        sequence_,
-        {.count = 4, .iterations = 3, .distances = straight_distances(), .threads = threads});
+    return decompose(sequence_, {.count = 4, .iterations = 3, .distances = straight_distances()},
+                     Context().with_threads(threads));
   };
   const Components one = components(1);
   for (const int threads : {2, 5}) {
@@ -72,14 +71,15 @@ TEST_F(Threads, DoNotChangeADecomposition) {
 TEST_F(Threads, DoNotChangeATransfer) {
   const std::vector<int> all = all_triangles(sequence_.triangles());
   const auto weights = [&](int threads) {
-    return BlendshapeTransfer(sequence_.rest(), model_, all, {.threads = threads})
-        .weights(sequence_);
+    const Context context = Context().with_threads(threads);
+    return BlendshapeTransfer(sequence_.rest(), model_, all, {}, context)
+        .weights(sequence_, context);
   };
   const auto frames = [&](int threads) {
-    VertexTransferOptions options;
-    options.threads = threads;
-    return VertexTransfer(sequence_.rest(), model_.neutral(), sequence_.triangles(), all, options)
-        .frames(sequence_);
+    const Context context = Context().with_threads(threads);
+    return VertexTransfer(sequence_.rest(), model_.neutral(), sequence_.triangles(), all, {},
+                          context)
+        .frames(sequence_, context);
   };
   for (const int threads : {2, 3}) {
     EXPECT_TRUE(weights(threads) == weights(1)) << threads;

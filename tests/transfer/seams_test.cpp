@@ -40,9 +40,9 @@ class SeamTest : public testing::Test {
     return options;
   }
 
-  Frames transferred(const VertexTransferOptions& options) const {
-    return VertexTransfer(take_.rest(), target_.positions, face_.triangles, all_, options)
-        .frames(take_);
+  Frames transferred(const VertexTransferOptions& options, const Context& context = {}) const {
+    return VertexTransfer(take_.rest(), target_.positions, face_.triangles, all_, options, context)
+        .frames(take_, context);
   }
 
   /// Largest distance between two vertices that are copies of one.
@@ -85,8 +85,8 @@ TEST_F(SeamTest, WeldsTheSeamAndNotTheLipsInMemoryAndOfAStream) {
   EXPECT_EQ(weld.count, 10);
   const test::Stream stream(take_);
   for (const int threads : {1, 3}) {
-    EXPECT_EQ(closed_seams(stream, target_.positions, {.threads = threads}).representative,
-              face_.original);
+    const Context context = Context().with_threads(threads);
+    EXPECT_EQ(closed_seams(stream, target_.positions, context).representative, face_.original);
   }
 }
 
@@ -361,11 +361,8 @@ TEST_F(StitchedSeamTest, IsNotHeldByTrianglesThatAreNotSelected) {
 }
 
 TEST_F(SeamTest, MovesTheSameByAnyNumberOfThreads) {
-  VertexTransferOptions options = welded();
-  options.threads = 1;
-  const Frames one = transferred(options);
-  options.threads = 3;
-  EXPECT_EQ(transferred(options), one);
+  const Frames one = transferred(welded(), Context().with_threads(1));
+  EXPECT_EQ(transferred(welded(), Context().with_threads(3)), one);
 }
 
 TEST_F(SeamTest, ChangesNoByteWhereNothingCoincides) {

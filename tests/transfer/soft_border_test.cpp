@@ -125,11 +125,11 @@ Positions literal_fade(const MeshSequence& pose, const Positions& target,
 class SoftBorderTest : public testing::Test {
  protected:
   Frames transferred(const MeshSequence& take, const Eigen::VectorXd& weights,
-                     VertexTransferOptions options = {}) const {
+                     VertexTransferOptions options = {}, const Context& context = {}) const {
     options.weights = weights;
     return VertexTransfer(take.rest(), target_, take.triangles(),
-                          with_weight(take.triangles(), weights), options)
-        .frames(take);
+                          with_weight(take.triangles(), weights), options, context)
+        .frames(take, context);
   }
 
   const Shape source_ = patch();
@@ -280,7 +280,8 @@ TEST_F(SoftBorderTest, WithoutVerticesOfWeightZeroHasTheSourcesPlace) {
 }
 
 TEST_F(SoftBorderTest, IsTheSameForEveryNumberOfThreads) {
-  EXPECT_EQ(transferred(take_, disc_, {.threads = 1}), transferred(take_, disc_, {.threads = 3}));
+  EXPECT_EQ(transferred(take_, disc_, {}, Context().with_threads(1)),
+            transferred(take_, disc_, {}, Context().with_threads(3)));
 }
 
 TEST_F(SoftBorderTest, IsTheSameForAPairingOfTheSameFaces) {

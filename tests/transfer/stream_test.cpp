@@ -22,23 +22,22 @@ class StreamedPerformance : public testing::Test {
   const BlendshapeModel actor_ = test::model_on(test::bent_patch(), 5);
   const std::vector<int> selected_ = test::half_of(actor_.triangles());
 
-  VertexTransfer to_vertices(int threads = 0) const {
-    VertexTransferOptions options;
-    options.threads = threads;
-    return VertexTransfer(performance_.rest(), actor_.neutral(), actor_.triangles(), selected_,
-                          options);
+  VertexTransfer to_vertices(const Context& context = {}) const {
+    return VertexTransfer(performance_.rest(), actor_.neutral(), actor_.triangles(), selected_, {},
+                          context);
   }
 };
 
 TEST_F(StreamedPerformance, HasTheSameWeights) {
   for (const double smoothness : {0.0, 0.1}) {
     for (const int threads : {1, 3}) {
+      const Context context = Context().with_threads(threads);
       const BlendshapeTransfer transfer(performance_.rest(), actor_, selected_,
-                                        {.smoothness = smoothness, .threads = threads});
-      const Eigen::MatrixXd weights = transfer.weights(performance_);
-      EXPECT_TRUE(transfer.weights(stream_) == weights);
-      EXPECT_EQ(transfer.rest_looks_unneutral(stream_, weights),
-                transfer.rest_looks_unneutral(performance_, weights));
+                                        {.smoothness = smoothness}, context);
+      const Eigen::MatrixXd weights = transfer.weights(performance_, context);
+      EXPECT_TRUE(transfer.weights(stream_, context) == weights);
+      EXPECT_EQ(transfer.rest_looks_unneutral(stream_, weights, context),
+                transfer.rest_looks_unneutral(performance_, weights, context));
     }
   }
 }
@@ -49,7 +48,8 @@ TEST_F(StreamedPerformance, MovesTheSameVertices) {
   for (const int threads : {1, 3}) {
     FrameStore store({actor_.shared_connectivity(), performance_.times(), actor_.neutral(), true},
                      0);
-    to_vertices(threads).write_frames(stream_, store);
+    const Context context = Context().with_threads(threads);
+    to_vertices(context).write_frames(stream_, store, context);
     EXPECT_TRUE(store.read(0, 43) == expected);
   }
 }
@@ -59,8 +59,8 @@ TEST_F(StreamedPerformance, IsMeasuredTheSame) {
                             actor_.neutral());
   const TransferError expected = transfer_error(performance_, result, selected_);
   for (const int threads : {1, 3}) {
-    const TransferError found =
-        transfer_error(stream_, test::Stream(result), selected_, {.threads = threads});
+    const TransferError found = transfer_error(stream_, test::Stream(result), selected_, {},
+                                               Context().with_threads(threads));
     EXPECT_TRUE(found.per_frame == expected.per_frame);
     EXPECT_TRUE(found.per_triangle == expected.per_triangle);
     EXPECT_EQ(found.de_all, expected.de_all);
@@ -80,8 +80,8 @@ TEST_F(StreamedPerformance, ThatBreaksThrowsWhatReadingThrows) {
 }
 
 TEST_F(StreamedPerformance, IsNotMeasuredFurtherThanProgressAllows) {
-  const TransferErrorOptions options{.progress = [](double share) { return share < 1; }};
-  EXPECT_THROW(transfer_error(stream_, stream_, selected_, options), Cancelled);
+  const Context unfinished = Context().with_progress([](double share) { return share < 1; });
+  EXPECT_THROW(transfer_error(stream_, stream_, selected_, {}, unfinished), Cancelled);
 }
 
 }  // namespace

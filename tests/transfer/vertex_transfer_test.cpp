@@ -140,9 +140,9 @@ TEST(VertexTransfer, RefusesTrianglesAndPerformancesOfOtherMeshes) {
 TEST(VertexTransfer, StopsWhenAsked) {
   const Shape shape = patch();
   const VertexTransfer transfer(shape.positions, shape.positions, shape.triangles,
-                                all_triangles(shape.triangles),
-                                {.progress = [](double) { return false; }});
-  EXPECT_THROW(transfer.frames(test::shaken(shape, 2, 0.1)), Cancelled);
+                                all_triangles(shape.triangles));
+  const Context cancelled = Context().with_progress([](double) { return false; });
+  EXPECT_THROW(transfer.frames(test::shaken(shape, 2, 0.1), cancelled), Cancelled);
 }
 
 }  // namespace

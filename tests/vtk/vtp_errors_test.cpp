@@ -94,9 +94,9 @@ TEST_F(VtpErrors, ANameThatXmlCannotHoldIsRefused) {
 
 TEST_F(VtpErrors, ACancelledSeriesLeavesNothing) {
   const auto stop_at_half = [](double share) { return share < 0.5; };
-  EXPECT_THROW(
-      write_vtp_series(quad_and_triangle(), in_folder("face.pvd"), {.progress = stop_at_half}),
-      Cancelled);
+  EXPECT_THROW(write_vtp_series(quad_and_triangle(), in_folder("face.pvd"), {},
+                                Context().with_progress(stop_at_half)),
+               Cancelled);
   EXPECT_TRUE(folder_is_empty());
 }
 

@@ -49,10 +49,11 @@ class VtpFields : public VtpTest {
     std::vector<std::string> names, notes;
     FieldSequence series;
   };
-  Read read(VtpReadOptions options = {}) const {
+  Read read(const VtpReadOptions& options = {}) const {
     Read found;
-    options.note = [&found](const std::string& note) { found.notes.push_back(note); };
-    found.series = open_vtp_series(in_folder("a.vtp.series"), options);
+    const auto take_note = [&found](const Note& note) { found.notes.push_back(note.text); };
+    found.series =
+        open_vtp_series(in_folder("a.vtp.series"), options, Context().with_notes(take_note));
     for (const Field& field : found.series.fields) found.names.push_back(field.name);
     return found;
   }

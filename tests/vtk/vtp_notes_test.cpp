@@ -38,7 +38,7 @@ class VtpNotes : public VtpTest {
     const Format& reader = table_.reader(DataKind::sequence, path);
     Parameters parameters(reader.reading);
     if (frames) parameters.set("frames", *frames);
-    return reader.read(path, {.parameters = parameters}).notes;
+    return reader.read(path, {.parameters = parameters}, {}).notes;
   }
 
   OperationTable table_;
@@ -100,7 +100,7 @@ TEST_F(VtpNotes, NameFieldsInWhosePlaceDisplacementsAreWritten) {
   EXPECT_THAT(notes_on_losses(format, given, {.target = target, .parameters = parameters}),
               ElementsAre(HasSubstr("face.pvd: the input's field 'displacement' is replaced by the "
                                     "displacement from the rest pose")));
-  format.write(given, {.target = target, .parameters = parameters});
+  format.write(given, {.target = target, .parameters = parameters}, {});
   const FieldSequence read = read_vtp_series(target);
   EXPECT_TRUE(read.sequence().rest_is_known());
   EXPECT_EQ(read.fields.size(), given.fields.size() - 1);

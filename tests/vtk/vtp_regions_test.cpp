@@ -30,7 +30,7 @@ class VtpRegions : public VtpTest {
     const ReadRequest request{.parameters = none,
                               .vertices = mesh_.frames->vertices(),
                               .triangles = &mesh_.frames->triangles()};
-    const ReadValue value = table_.reader(DataKind::regions, path).read(path, request);
+    const ReadValue value = table_.reader(DataKind::regions, path).read(path, request, {});
     return std::get<RegionData>(value.value.data).regions;
   }
 

@@ -157,10 +157,12 @@ TEST_F(VtpSeries, WritesTheFirstFrameIntoASingleVtp) {
 
 TEST_F(VtpSeries, ReportsProgressUpToOne) {
   std::vector<double> shares;
-  write_vtp_series(quad_and_triangle(), in_folder("face.pvd"), {.progress = [&](double share) {
-                     shares.push_back(share);
-                     return true;
-                   }});
+  const auto note_share = [&](double share) {
+    shares.push_back(share);
+    return true;
+  };
+  write_vtp_series(quad_and_triangle(), in_folder("face.pvd"), {},
+                   Context().with_progress(note_share));
   EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
   EXPECT_EQ(shares.back(), 1);
 }
@@ -168,10 +170,11 @@ TEST_F(VtpSeries, ReportsProgressUpToOne) {
 TEST_F(VtpSeries, WritesTheSameBytesForEveryNumberOfThreads) {
   FieldSequence fields = quad_and_triangle();
   fields = FieldSequence(twenty_frames_of(fields.sequence()), fields.fields, fields.displacement);
-  const auto one = write_vtp_series(fields, in_folder("one/face.pvd"), {.threads = 1});
+  const auto one =
+      write_vtp_series(fields, in_folder("one/face.pvd"), {}, Context().with_threads(1));
   for (const int threads : {2, 3}) {
     const auto other = write_vtp_series(fields, in_folder(std::to_string(threads) + "/face.pvd"),
-                                        {.threads = threads});
+                                        {}, Context().with_threads(threads));
     ASSERT_EQ(other.size(), one.size());
     for (std::size_t i = 0; i < one.size(); ++i) {
       EXPECT_EQ(bytes_of(other[i]), bytes_of(one[i])) << other[i];

@@ -7,7 +7,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "toolkit/mesh/ranks.h"
 #include "toolkit/operations/counted.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/memory_use.h"
@@ -82,7 +81,7 @@ Outcome planned(const Operation& operation, const Invocation& invocation) {
   }
   const MemoryUse use = MemoryUse::of_this_process();
   const double peak = std::max(use.peak, use.now + computing);
-  const int processes = operation.shared && invocation.ranks ? invocation.ranks->count() : 1;
+  const int processes = invocation.context.ranks().count();
   text << "  memory  " << megabytes(peak)
        << (processes > 1 ? " in each of " + std::to_string(processes) + " processes" : "")
        << ", of which " << megabytes(use.now) << " hold program and inputs\n";

@@ -10,8 +10,8 @@
 
 #include "toolkit/cli/terminal_text.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/operations/option_words.h"
+#include "toolkit/operations/parameter.h"
 
 namespace mimetra::cli {
 

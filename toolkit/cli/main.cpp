@@ -89,14 +89,14 @@ void add_built(mimetra::OperationTable& table) {
   mimetra::cli::add_manual(table);
 }
 
-void run(const std::vector<std::string>& arguments, const mimetra::Ranks* ranks) {
+void run(const std::vector<std::string>& arguments, const mimetra::Context& context) {
   mimetra::OperationTable table;
   add_built(table);
   const std::vector<std::string> left_out = mimetra::add_plugins(table, mimetra::plugin_folders());
   const mimetra::cli::ParsedLine line = parse(table, arguments, left_out);
   if (line.request) {
-    mimetra::cli::run_command(table, *line.request, ranks);
-  } else if (!ranks || ranks->rank() == 0) {
+    mimetra::cli::run_command(table, *line.request, context);
+  } else if (context.ranks().rank() == 0) {
     if (!(std::cout << line.text << std::flush)) {
       throw mimetra::OutputError("standard output", "cannot be written");
     }
@@ -155,9 +155,9 @@ void take_signals() {
 }
 
 /// Runs a command line, prints its error and returns the exit code.
-int exit_code_of(const std::vector<std::string>& arguments, const mimetra::Ranks* ranks) {
+int exit_code_of(const std::vector<std::string>& arguments, const mimetra::Context& context) {
   try {
-    return mimetra::cli::exit_code_of([&] { run(arguments, ranks); });
+    return mimetra::cli::exit_code_of([&] { run(arguments, context); });
   } catch (const std::bad_alloc&) {
     spdlog::error(memory_message());
     return mimetra::cli::kFailed;
@@ -173,7 +173,7 @@ int shared_exit_code(const std::vector<std::string>& arguments) {
   const bool is_first = ranks.rank() == 0;
   std::ostringstream said;
   if (!is_first) mimetra::cli::say_to(said);
-  const int code = exit_code_of(arguments, &ranks);
+  const int code = exit_code_of(arguments, mimetra::Context().with_ranks(ranks));
   if (!is_first) mimetra::cli::say_to(std::cerr);
   if (code == mimetra::cli::kDone || ranks.count() == 1) return code;
   if (!is_first) {
@@ -204,7 +204,7 @@ int single_exit_code(const std::vector<std::string>& arguments) {
         processes, variable);
     return mimetra::cli::kUsage;
   }
-  return exit_code_of(arguments, nullptr);
+  return exit_code_of(arguments, {});
 }
 #endif
 

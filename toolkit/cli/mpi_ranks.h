@@ -1,6 +1,6 @@
 #pragma once
 
-#include "toolkit/mesh/ranks.h"
+#include "toolkit/mesh/context.h"
 
 namespace mimetra::cli {
 

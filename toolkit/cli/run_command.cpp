@@ -19,7 +19,6 @@
 #include "toolkit/cli/dry_run.h"
 #include "toolkit/cli/terminal_text.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/call.h"
@@ -106,7 +105,7 @@ bool shows_bar(const Request& request) {
 }
 
 /// What the program asks of the operation.
-CallRequest call_of(const Request& request) {
+CallRequest call_of(const Request& request, const Context& context, Progress progress) {
   CallRequest call;
   call.operation = request.operation;
   call.parameters = request.parameters;
@@ -115,7 +114,7 @@ CallRequest call_of(const Request& request) {
     call.destinations[output] = {path, request.force};
   }
   call.may_stream = true;
-  call.threads = request.threads;
+  call.context = context.with_threads(request.threads).with_progress(std::move(progress));
   call.arguments = request.arguments;
   call.files.assign(request.files.begin(), request.files.end());
   return call;
@@ -136,13 +135,9 @@ void print_result(const Request& request, const Outcome& outcome,
 }
 
 /// Computes what the operation shares, in silence; the first process writes.
-void help_first(const OperationTable& table, const Request& request, const Ranks& ranks) {
+void help_first(const OperationTable& table, const Request& request, const Context& context) {
   if (!request.operation->shared || request.dry_run) return;
-  CallRequest asked = call_of(request);
-  asked.ranks = &ranks;
-  asked.progress = [](double) { return !interrupted; };
-  asked.log = [](LogLevel, const std::string&) {};
-  Call call(table, std::move(asked));
+  Call call(table, call_of(request, context, [](double) { return !interrupted; }));
   call.load();
   call.run();
   call.write();
@@ -162,12 +157,10 @@ void interrupt() {
   interrupted = true;
 }
 
-void run_command(const OperationTable& table, const Request& request, const Ranks* ranks) {
-  if (ranks && ranks->rank() > 0) return help_first(table, request, *ranks);
+void run_command(const OperationTable& table, const Request& request, const Context& context) {
+  if (context.ranks().rank() > 0) return help_first(table, request, context);
   Bar bar("mimetra " + request.operation->name, shows_bar(request));
-  CallRequest asked = call_of(request);
-  asked.ranks = ranks;
-  asked.progress = [&bar](double share) { return bar.update(share); };
+  CallRequest asked = call_of(request, context, [&bar](double share) { return bar.update(share); });
   std::vector<std::string> warnings;
   asked.log = [&bar, &warnings](LogLevel level, const std::string& text) {
     const std::string message = with_options_spelled(text, spelled_for_command);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "toolkit/cli/command_line.h"
-#include "toolkit/mesh/ranks.h"
+#include "toolkit/mesh/context.h"
 
 namespace mimetra::cli {
 
@@ -9,8 +9,8 @@ namespace mimetra::cli {
 void interrupt();
 
 /// Reads the inputs, runs the operation, writes outputs and manifest, prints the result on stdout
-/// and everything else on stderr. Of several ranks all call it; what they share they compute
-/// together, and the first alone does all else. Throws what these throw.
-void run_command(const OperationTable& table, const Request& request, const Ranks* ranks = nullptr);
+/// and everything else on stderr. Several ranks all call it: what they share they compute together,
+/// and the first alone does all else. Of the context only the ranks count. Throws what these throw.
+void run_command(const OperationTable& table, const Request& request, const Context& context = {});
 
 }  // namespace mimetra::cli

@@ -119,12 +119,10 @@ std::string landmark_name(int landmark) {
 MarkerSearch::MarkerSearch(Head source, LandmarkFinder finder, const FaceSearchOptions& options)
     : source_(std::move(source)), finder_(std::move(finder)), options_(options) {}
 
-AutomaticMarkers MarkerSearch::operator()(const Head& target) {
-  const auto landmarks_of = [this](Head head, bool are_known, double from, double to) {
+AutomaticMarkers MarkerSearch::operator()(const Head& target, const Context& context) {
+  const auto landmarks_of = [&](Head head, bool are_known, double from, double to) {
     if (!are_known) head.known.clear();
-    FaceSearchOptions search = options_;
-    search.progress = part_of(options_.progress, from, to);
-    return find_landmarks(head, finder_, search);
+    return find_landmarks(head, finder_, options_, context.part(from, to));
   };
   const bool are_known = !source_.known.empty() && !target.known.empty();
   AutomaticMarkers result;
@@ -153,8 +151,9 @@ AutomaticMarkers MarkerSearch::operator()(const Head& target) {
 }
 
 AutomaticMarkers automatic_markers(const Head& source, const Head& target,
-                                   const LandmarkFinder& finder, const FaceSearchOptions& options) {
-  return MarkerSearch(source, finder, options)(target);
+                                   const LandmarkFinder& finder, const FaceSearchOptions& options,
+                                   const Context& context) {
+  return MarkerSearch(source, finder, options)(target, context);
 }
 
 }  // namespace mimetra

@@ -6,6 +6,7 @@
 
 #include "toolkit/correspondence/face_landmarks.h"
 #include "toolkit/correspondence/markers.h"
+#include "toolkit/mesh/context.h"
 
 namespace mimetra {
 
@@ -35,7 +36,7 @@ std::string landmark_name(int landmark);
 class MarkerSearch {
  public:
   /// Keeps the finder; an empty one finds nothing.
-  MarkerSearch(Head source, LandmarkFinder finder, const FaceSearchOptions& = {});
+  MarkerSearch(Head source, LandmarkFinder finder, const FaceSearchOptions& options = {});
 
   /// Pairs the landmarks that find_landmarks() gives for both heads. Landmarks that are known of
   /// one head only do not count: a finder errs alike on both, and other hands put brows elsewhere.
@@ -43,7 +44,7 @@ class MarkerSearch {
   ///
   /// Throws what find_landmarks() throws, and MismatchError where the landmarks of both are too few
   /// for markers, or lie in one plane.
-  AutomaticMarkers operator()(const Head& target);
+  AutomaticMarkers operator()(const Head& target, const Context& context = {});
 
  private:
   Head source_;
@@ -54,6 +55,8 @@ class MarkerSearch {
 
 /// A search for one target.
 AutomaticMarkers automatic_markers(const Head& source, const Head& target,
-                                   const LandmarkFinder& finder, const FaceSearchOptions& = {});
+                                   const LandmarkFinder& finder,
+                                   const FaceSearchOptions& options = {},
+                                   const Context& context = {});
 
 }  // namespace mimetra

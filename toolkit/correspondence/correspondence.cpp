@@ -54,12 +54,12 @@ struct PairedSurface {
 
 /// Calls `work(t)` for each triangle.
 template <typename Work>
-void for_each_triangle(int count, int threads, Work work) {
-  const int blocks = (count + kTrianglesAtATime - 1) / kTrianglesAtATime;
-  parallel_for(blocks, threads, [&](int block) {
+void for_each_triangle(int count, const Work& work, const Context& context) {
+  const auto work_on_block = [&](int block) {
     const int last = std::min(count, (block + 1) * kTrianglesAtATime);
     for (int t = block * kTrianglesAtATime; t < last; ++t) work(t);
-  });
+  };
+  parallel_for((count + kTrianglesAtATime - 1) / kTrianglesAtATime, work_on_block, context);
 }
 
 /// What `side`'s triangles find on `other`.
@@ -69,11 +69,11 @@ struct Partners {
 };
 
 Partners found_on(const PairedSurface& side, const PairedSurface& other, double reach,
-                  int threads) {
+                  const Context& context) {
   const auto count = static_cast<int>(side.triangles.rows());
   Partners found{std::vector<int>(count, -1),
                  Eigen::VectorXd::Constant(count, std::numeric_limits<double>::infinity())};
-  for_each_triangle(count, threads, [&](int t) {
+  const auto find = [&](int t) {
     const Eigen::Vector3d middle = side.middles.row(t), normal = side.normals.row(t);
     const SurfacePoint point = other.surface.closest(middle, normal);
     if (point.triangle < 0) return;
@@ -83,7 +83,8 @@ Partners found_on(const PairedSurface& side, const PairedSurface& other, double 
     const double limit =
         std::max(reach, side.longest_edge[t] + other.longest_edge[nearest.triangle]);
     if (nearest.squared_distance <= limit * limit) found.partner[t] = nearest.triangle;
-  });
+  };
+  for_each_triangle(count, find, context);
   return found;
 }
 
@@ -166,21 +167,22 @@ std::string CorrespondenceQuality::verdict() const {
 }
 
 Correspondence pair_triangles(const SurfaceFit& fitted, const Triangles& source,
-                              const TriMesh& target, int threads) {
+                              const TriMesh& target, const Context& context) {
   const ReachedTriangles of_source(fitted.positions, source, fitted.reached);
   const ReachedTriangles of_target(target.positions, target.connectivity.triangles,
                                    fitted.target_reached);
   const PairedSurface from(fitted.positions, of_source.triangles);
   const PairedSurface to(target.positions, of_target.triangles);
   const double reach = kPairReach * fitted.target_box.diagonal;
-  const Partners found = found_on(to, from, reach, threads);
-  const auto partners = partners_of(to, found, found_on(from, to, reach, threads));
+  const Partners of_to = found_on(to, from, reach, context.part(0, 0.5));
+  const Partners of_from = found_on(from, to, reach, context.part(0.5, 1));
+  const auto partners = partners_of(to, of_to, of_from);
 
   Correspondence result;
   result.source_triangles = static_cast<int>(source.rows());
   const Eigen::Index triangles = target.connectivity.triangles.rows();
   result.residuals.setConstant(triangles, std::numeric_limits<double>::infinity());
-  result.residuals(of_target.numbers) = found.residuals;
+  result.residuals(of_target.numbers) = of_to.residuals;
   std::size_t next = 0;
   for (int t = 0; t < triangles; ++t) {
     if (next < partners.size() && of_target.numbers[next] == t) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "toolkit/correspondence/surface_fit.h"
+#include "toolkit/mesh/context.h"
 
 namespace mimetra {
 
@@ -59,6 +60,6 @@ CorrespondenceQuality quality_of(const Correspondence& pairs, double size);
 /// are shorter), and have its place inside the other's surface, not on its border. Weights are the
 /// partners' areas. Triangles that no marker reaches have no partner, and are none.
 Correspondence pair_triangles(const SurfaceFit& fitted, const Triangles& source,
-                              const TriMesh& target, int threads = 0);
+                              const TriMesh& target, const Context& context = {});
 
 }  // namespace mimetra

@@ -86,10 +86,12 @@ Agreement agreement(const std::vector<Vector3d>& points, double reach) {
 /// One search of one head's face.
 class FaceSearch {
  public:
-  FaceSearch(const Head& head, const LandmarkFinder& finder, const FaceSearchOptions& options)
+  FaceSearch(const Head& head, const LandmarkFinder& finder, const FaceSearchOptions& options,
+             const Context& context)
       : head_(head),
         finder_(finder),
         options_(options),
+        context_(context),
         weld_(Weld::exact(head.mesh.positions)),
         triangles_(weld_.welded(head.mesh.connectivity.triangles)),
         parts_(surface_parts(head.mesh.positions, head.mesh.connectivity.triangles, weld_)),
@@ -100,14 +102,13 @@ class FaceSearch {
     const Positions& all = head_.mesh.positions;
     const Positions drawn =
         all(used_vertices(head_.mesh.connectivity.triangles, all.rows()), Eigen::all);
-    const auto first =
-        most_certain_face(painter_, drawn, finder_, options_.pixels, options_.threads,
-                          part_of(options_.progress, 0, kSearchShare));
+    const auto first = most_certain_face(painter_, drawn, finder_, options_.pixels,
+                                         context_.part(0, kSearchShare));
     if (!first) fail("no face was found in drawings of it along all of its axes");
     skin_ = skin_part(*first, triangles_, parts_);
     const FacePlace place = nearer_place(*face_place(*first));
     const std::vector<MeshView> views = views_of(place, options_.pixels);
-    const std::vector<SeenFace> seen = faces_in(views, part_of(options_.progress, kSearchShare, 1));
+    const std::vector<SeenFace> seen = faces_in(views, context_.part(kSearchShare, 1));
     FaceLandmarks found;
     found.axes = place.axes;
     found.views = static_cast<int>(views.size());
@@ -130,13 +131,12 @@ class FaceSearch {
 
   bool is_skin(int t) const { return parts_.of_vertex[triangles_(t, 0)] == skin_; }
 
-  std::vector<SeenFace> faces_in(const std::vector<MeshView>& views,
-                                 const Progress& progress) const {
+  std::vector<SeenFace> faces_in(const std::vector<MeshView>& views, const Context& context) const {
     std::vector<std::optional<SeenFace>> seen(views.size());
     const auto look = [&](int i) {
       seen[i] = seen_face(painter_, views[i], finder_, [this](int t) { return is_skin(t); });
     };
-    parallel_for(static_cast<int>(views.size()), options_.threads, look, progress);
+    parallel_for(static_cast<int>(views.size()), look, context);
     std::vector<SeenFace> faces;
     for (auto& face : seen) {
       if (face) faces.push_back(std::move(*face));
@@ -150,7 +150,7 @@ class FaceSearch {
     views.resize(kFaceLights);
     std::optional<FacePlace> best;
     double confidence = 0;
-    for (const SeenFace& face : faces_in(views, {})) {
+    for (const SeenFace& face : faces_in(views, context_.part(kSearchShare, kSearchShare))) {
       const auto found = face_place(face);
       if (!found || (best && face.confidence <= confidence)) continue;
       best = found;
@@ -222,6 +222,7 @@ class FaceSearch {
   const Head& head_;
   const LandmarkFinder& finder_;
   const FaceSearchOptions& options_;
+  const Context& context_;
   Weld weld_;
   Triangles triangles_;
   SurfaceParts parts_;
@@ -259,7 +260,7 @@ double FaceLandmarks::mean_spread() const {
 }
 
 FaceLandmarks find_landmarks(const Head& head, const LandmarkFinder& finder,
-                             const FaceSearchOptions& options) {
+                             const FaceSearchOptions& options, const Context& context) {
   check_options(options);
   if (!head.known.empty()) return known_landmarks(head);
   if (!finder) {
@@ -268,7 +269,7 @@ FaceLandmarks find_landmarks(const Head& head, const LandmarkFinder& finder,
         ": this program cannot find faces (it was built without dlib); pair vertices of both heads "
         "by hand");
   }
-  return FaceSearch(head, finder, options).landmarks();
+  return FaceSearch(head, finder, options, context).landmarks();
 }
 
 }  // namespace mimetra

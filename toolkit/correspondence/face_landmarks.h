@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "toolkit/correspondence/landmark_finder.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/option.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
@@ -28,9 +28,6 @@ struct FaceSearchOptions {
   double max_spread = 0.06;
   /// Width and height of the drawings of a face; a finder may need half of it to see one.
   int pixels = 384;
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  Progress progress = {};
 
   static constexpr Option kMaxSpread{
       "max_spread", &FaceSearchOptions::max_spread, {.minimum = 0, .maximum = 1}};
@@ -72,10 +69,10 @@ struct FaceLandmarks {
 /// mouth is closed; the jaw but for the chin (8), as it lies on the outline, which is another part
 /// of the surface in each view.
 ///
-/// Known landmarks are taken as they are. Throws MismatchError that names the mesh where no face is
-/// found, or a known landmark is no vertex of it; std::invalid_argument for options out of range;
-/// Cancelled; what the finder throws.
+/// Known landmarks are taken as they are. Throws MismatchError that names the mesh if no face is
+/// found, or if the mesh has no vertex of a known landmark; std::invalid_argument for options out
+/// of range; Cancelled; what the finder throws.
 FaceLandmarks find_landmarks(const Head& head, const LandmarkFinder& finder,
-                             const FaceSearchOptions& = {});
+                             const FaceSearchOptions& options = {}, const Context& context = {});
 
 }  // namespace mimetra

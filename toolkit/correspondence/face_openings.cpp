@@ -169,16 +169,17 @@ std::vector<FaceOpening> face_openings(const TriMesh& rest, const LandmarkVertic
 }
 
 Eigen::MatrixXd openness(const FrameSource& sequence, const std::vector<FaceOpening>& openings,
-                         const BlockOptions& options) {
+                         const Context& context) {
   Eigen::MatrixXd result(sequence.frames(), static_cast<Eigen::Index>(openings.size()));
-  for_each_block(sequence, options, [&](int first, const Frames& poses) {
+  const auto measure = [&](int first, const Frames& poses) {
     for (Eigen::Index f = 0; f < poses.rows(); ++f) {
       const Eigen::Map<const Positions> pose(poses.row(f).data(), sequence.vertices(), 3);
       for (Eigen::Index o = 0; o < result.cols(); ++o) {
         result(first + f, o) = shortest_distance(pose, openings[o]) / openings[o].width;
       }
     }
-  });
+  };
+  for_each_block(sequence, measure, context);
   return result;
 }
 

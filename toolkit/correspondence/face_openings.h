@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "toolkit/correspondence/face_landmarks.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/frame_source.h"
 
 namespace mimetra {
@@ -27,6 +28,6 @@ std::vector<FaceOpening> face_openings(const TriMesh& rest, const LandmarkVertic
 /// The shortest distance between the edges' vertices, in shares of the opening's width (F x
 /// openings). Throws what reading throws, Cancelled.
 Eigen::MatrixXd openness(const FrameSource& sequence, const std::vector<FaceOpening>& openings,
-                         const BlockOptions& = {});
+                         const Context& context = {});
 
 }  // namespace mimetra

@@ -146,8 +146,9 @@ std::optional<FacePlace> face_place(const SeenFace& seen) {
 }
 
 std::optional<SeenFace> most_certain_face(const MeshPainter& painter, const Positions& positions,
-                                          const LandmarkFinder& finder, int pixels, int threads,
-                                          const Progress& progress) {
+                                          const LandmarkFinder& finder, int pixels,
+                                          const Context& context) {
+  Context of_drawings = context;
   for (const double share : kOfWholeMesh) {
     if (share > 1 && positions.rows() < kFewestOfBody) break;
     const std::vector<MeshView> views =
@@ -156,7 +157,9 @@ std::optional<SeenFace> most_certain_face(const MeshPainter& painter, const Posi
     const auto look = [&](int i) {
       seen[i] = seen_face(painter, views[i], finder, [](int) { return true; });
     };
-    parallel_for(static_cast<int>(views.size()), threads, look, progress);
+    parallel_for(static_cast<int>(views.size()), look, of_drawings);
+    // The first drawings show the face as a rule: the others have no share of the progress.
+    of_drawings = context.part(1, 1);
     std::optional<SeenFace> best;
     for (const auto& face : seen) {
       if (!face || !face_place(*face)) continue;

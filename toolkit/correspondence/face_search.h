@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "toolkit/correspondence/mesh_drawing.h"
-#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/context.h"
 
 /// Where the face is on a mesh. Internal to face_landmarks.h.
 namespace mimetra {
@@ -44,8 +44,8 @@ std::optional<FacePlace> face_place(const SeenFace& seen);
 /// What is seen in the drawing along one of the mesh's axes, up along another, whose face is the
 /// most certain; none where no drawing shows a face. All of `positions` are in the drawings.
 std::optional<SeenFace> most_certain_face(const MeshPainter& painter, const Positions& positions,
-                                          const LandmarkFinder& finder, int pixels, int threads,
-                                          const Progress& progress);
+                                          const LandmarkFinder& finder, int pixels,
+                                          const Context& context);
 
 /// From several sides, the front first, each under all lights; large enough for the finder.
 constexpr int kFaceLights = 3;

@@ -34,16 +34,16 @@ TriMesh turned_over(TriMesh mesh) {
 
 FoundCorrespondence find_correspondence(const TriMesh& source, const TriMesh& target,
                                         const std::vector<Marker>& markers,
-                                        const SurfaceFitOptions& options) {
+                                        const SurfaceFitOptions& options, const Context& context) {
   check_fit(source, target, markers);
   FoundCorrespondence found;
   found.inside_out = is_inside_out(source, target, markers);
   const TriMesh facing = found.inside_out ? turned_over(target) : target;
-  found.fit = fit_to_surface(source, facing, markers, options);
+  found.fit = fit_to_surface(source, facing, markers, options, context);
   const Triangles& triangles = source.connectivity.triangles;
-  found.correspondence =
-      with_unmarked_parts(pair_triangles(found.fit, triangles, facing, options.threads), found.fit,
-                          source, facing, options.threads);
+  const Context at_end = context.part(1, 1);
+  found.correspondence = with_unmarked_parts(pair_triangles(found.fit, triangles, facing, at_end),
+                                             found.fit, source, facing, at_end);
   found.quality = quality_of(found.correspondence, found.fit.target_box.diagonal);
   const ReachedTriangles parts(found.fit.positions, triangles, found.fit.reached);
   std::vector<bool> is_partner(triangles.rows(), false);

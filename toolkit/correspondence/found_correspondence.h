@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "toolkit/correspondence/correspondence.h"
+#include "toolkit/mesh/context.h"
 
 namespace mimetra {
 
@@ -19,6 +20,7 @@ struct FoundCorrespondence {
 /// is_inside_out() throw.
 FoundCorrespondence find_correspondence(const TriMesh& source, const TriMesh& target,
                                         const std::vector<Marker>& markers,
-                                        const SurfaceFitOptions& = {});
+                                        const SurfaceFitOptions& options = {},
+                                        const Context& context = {});
 
 }  // namespace mimetra

@@ -127,7 +127,7 @@ struct ClosestPoints {
 };
 
 ClosestPoints closest_points(const Source& source, const Positions& positions,
-                             const ClosestSurface& target, int threads) {
+                             const ClosestSurface& target, const Context& context) {
   const Positions normals = vertex_normals(positions, source.triangles);
   const auto vertices = static_cast<int>(positions.rows());
   ClosestPoints result{positions, Eigen::VectorXd::Zero(vertices)};
@@ -143,13 +143,13 @@ ClosestPoints closest_points(const Source& source, const Positions& positions,
     result.places.row(v) = found.position;
     result.counts[v] = 1;
   };
-  const int blocks = (vertices + kVerticesAtATime - 1) / kVerticesAtATime;
-  parallel_for(blocks, threads, [&](int block) {
+  const auto find_block = [&](int block) {
     const int last = std::min(vertices, (block + 1) * kVerticesAtATime);
     for (int v = block * kVerticesAtATime; v < last; ++v) {
       if (source.free[v]) find(v);
     }
-  });
+  };
+  parallel_for((vertices + kVerticesAtATime - 1) / kVerticesAtATime, find_block, context);
   return result;
 }
 
@@ -169,7 +169,8 @@ void check_fit(const TriMesh& source, const TriMesh& target, const std::vector<M
 }
 
 SurfaceFit fit_to_surface(const TriMesh& source_mesh, const TriMesh& target_mesh,
-                          const std::vector<Marker>& markers, const SurfaceFitOptions& options) {
+                          const std::vector<Marker>& markers, const SurfaceFitOptions& options,
+                          const Context& context) {
   check_options(options);
   check_fit(source_mesh, target_mesh, markers);
   Source source(source_mesh, markers);
@@ -205,15 +206,17 @@ SurfaceFit fit_to_surface(const TriMesh& source_mesh, const TriMesh& target_mesh
     if (target_reached[target_triangles(t, 0)]) rows.push_back(t);
   }
   const ClosestSurface surface(target, target_triangles(rows, Eigen::all));
-  report_progress(options.progress, share);
+  context.report(share);
   Positions positions = system.solve(held, start, Eigen::VectorXd::Zero(start.rows()));
   for (int step = 0; step < options.steps; ++step) {
-    report_progress(options.progress, share * (step + 2));
+    const double done = share * (step + 2);
+    context.report(done);
     source.set_border_directions(positions);
-    const ClosestPoints closest = closest_points(source, positions, surface, options.threads);
+    const ClosestPoints closest =
+        closest_points(source, positions, surface, context.part(done, done));
     positions = system.solve(held, closest.places, closest_weight(options, step) * closest.counts);
   }
-  report_progress(options.progress, 1);
+  context.report(1);
   for (Eigen::Index v = 0; v < positions.rows(); ++v) {
     if (source.reached[v]) positions.row(v) = positions.row(source.weld.representative[v]);
   }

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "toolkit/correspondence/markers.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/option.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/surface_parts.h"
 
 namespace mimetra {
@@ -20,9 +20,6 @@ struct SurfaceFitOptions {
   double last_closest = 5000;
   /// Solves with closest points, after the one with markers only.
   int steps = 4;
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  Progress progress = {};
 
   static constexpr Option kSmoothness{
       "smoothness", &SurfaceFitOptions::smoothness, {.minimum = 0, .maximum = 1e6}};
@@ -74,6 +71,7 @@ void check_fit(const TriMesh& source, const TriMesh& target, const std::vector<M
 ///
 /// [Sumner, Popovic. Deformation Transfer for Triangle Meshes. ACM TOG 23(3), 2004], section 4
 SurfaceFit fit_to_surface(const TriMesh& source, const TriMesh& target,
-                          const std::vector<Marker>& markers, const SurfaceFitOptions& = {});
+                          const std::vector<Marker>& markers, const SurfaceFitOptions& options = {},
+                          const Context& context = {});
 
 }  // namespace mimetra

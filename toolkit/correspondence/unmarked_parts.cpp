@@ -94,7 +94,8 @@ bool is_paired(const Correspondence& pairs, const std::vector<int>& triangles, d
 }  // namespace
 
 Correspondence with_unmarked_parts(Correspondence pairs, const SurfaceFit& fit,
-                                   const TriMesh& source, const TriMesh& target, int threads) {
+                                   const TriMesh& source, const TriMesh& target,
+                                   const Context& context) {
   const Triangles& from = source.connectivity.triangles;
   const Triangles& to = target.connectivity.triangles;
   const auto of_source = unreached_parts(source.positions, from, fit.reached);
@@ -105,7 +106,7 @@ Correspondence with_unmarked_parts(Correspondence pairs, const SurfaceFit& fit,
                     fit.target_box};
   others.reached.flip();
   others.target_reached.flip();
-  const Correspondence found = pair_triangles(others, from, target, threads);
+  const Correspondence found = pair_triangles(others, from, target, context);
 
   std::vector<int> part_of(static_cast<std::size_t>(target.positions.rows()), -1);
   for (std::size_t part = 0; part < of_target.size(); ++part) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "toolkit/correspondence/correspondence.h"
+#include "toolkit/mesh/context.h"
 
 namespace mimetra {
 
@@ -10,6 +11,7 @@ namespace mimetra {
 /// the target is taken if three quarters of its triangles have a partner, a tenth of its own size
 /// away on average at most; another is left without.
 Correspondence with_unmarked_parts(Correspondence pairs, const SurfaceFit& fit,
-                                   const TriMesh& source, const TriMesh& target, int threads = 0);
+                                   const TriMesh& source, const TriMesh& target,
+                                   const Context& context = {});
 
 }  // namespace mimetra

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "toolkit/mesh/option.h"
 #include "toolkit/operations/colors.h"
 #include "toolkit/operations/data.h"
 
@@ -38,6 +39,11 @@ struct ChartSize {
   int width = 640;   ///< pixels of one chart, >= 200
   int height = 560;  ///< >= 200
   int letters = 0;   ///< height of letters, pixels; 0 for what suits the height
+
+  static constexpr Option kWidth{"width", &ChartSize::width, {.minimum = 200}, "pixels"};
+  static constexpr Option kHeight{"height", &ChartSize::height, {.minimum = 200}, "pixels"};
+  static constexpr Option kLetters{"letters", &ChartSize::letters, {.minimum = 0}, "pixels"};
+  static constexpr auto declared() { return std::tuple(kWidth, kHeight, kLetters); }
 };
 
 /// Draws charts in a row, each with its title, axes and, below them, its legend where it has one.

@@ -29,7 +29,6 @@ namespace mimetra {
 
 namespace {
 
-constexpr int kSmallestSide = 200;
 /// Letters are this part of a chart's height, but never too small to read.
 constexpr int kLettersPerChart = 36;
 constexpr int kSmallestChartLetters = 11;
@@ -208,11 +207,7 @@ void check(const Chart& chart) {
 
 void check(const std::vector<Chart>& row, const ChartSize& size) {
   if (row.empty()) throw std::invalid_argument("a picture of charts needs a chart");
-  if (size.width < kSmallestSide || size.height < kSmallestSide) {
-    throw std::invalid_argument("a chart of " + std::to_string(size.width) + " x " +
-                                std::to_string(size.height) + " pixels, at least " +
-                                std::to_string(kSmallestSide) + " each way are readable");
-  }
+  check_options(size);
   const auto largest = static_cast<std::size_t>(kLargestPicture);
   if (row.size() * static_cast<std::size_t>(size.width) > largest ||
       size.height > kLargestPicture) {

@@ -48,8 +48,8 @@ const Painter& painter() {
   return painter;
 }
 
-Image draw(const Sheet& sheet, const DrawOptions& options) {
-  return painter().draw(sheet, options);
+Image draw(const Sheet& sheet, const Context& context) {
+  return painter().draw(sheet, context);
 }
 
 Image draw(const std::vector<Chart>& row, const ChartSize& size) {

@@ -14,7 +14,7 @@ namespace mimetra {
 class Painter {
  public:
   virtual ~Painter() = default;
-  virtual Image draw(const Sheet& sheet, const DrawOptions& options) const = 0;
+  virtual Image draw(const Sheet& sheet, const Context& context) const = 0;
   virtual Image draw(const std::vector<Chart>& row, const ChartSize& size) const = 0;
   virtual std::string png_of(const Image& image) const = 0;
   /// What a DrawingSession holds.

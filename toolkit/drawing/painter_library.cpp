@@ -12,8 +12,8 @@ namespace {
 
 class VtkPainter final : public Painter {
  public:
-  Image draw(const Sheet& sheet, const DrawOptions& options) const override {
-    return drawn(sheet, options);
+  Image draw(const Sheet& sheet, const Context& context) const override {
+    return drawn(sheet, context);
   }
   Image draw(const std::vector<Chart>& row, const ChartSize& size) const override {
     return drawn(row, size);

@@ -4,19 +4,15 @@
 #include <string>
 
 #include "toolkit/drawing/sheet.h"
-#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/context.h"
 
 namespace mimetra {
-
-struct DrawOptions {
-  Progress progress = {};
-};
 
 /// Draws a sheet. Light comes from the upper left, so that wrinkles show; vertices at one place are
 /// shaded as one. Throws std::invalid_argument for a sheet without tiles or larger than
 /// kLargestPicture, std::runtime_error where there is no OpenGL or it has not enough memory,
 /// Cancelled.
-Image draw(const Sheet& sheet, const DrawOptions& options = {});
+Image draw(const Sheet& sheet, const Context& context = {});
 
 /// What this thread draws while it lives is drawn by one window: OpenGL starts, and compiles its
 /// shaders, once instead of for each picture, and keeps its memory in between. The pictures are the

@@ -27,7 +27,6 @@
 #include "toolkit/drawing/offscreen_window.h"
 #include "toolkit/drawing/sheet_layout.h"
 #include "toolkit/mesh/normals.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/vtk/silent_vtk.h"
 
 namespace mimetra {
@@ -249,7 +248,7 @@ void add_tile(vtkRenderWindow& window, const Sheet& sheet, const SheetLayout& la
 
 }  // namespace
 
-Image drawn(const Sheet& sheet, const DrawOptions& options) {
+Image drawn(const Sheet& sheet, const Context& context) {
   const SheetLayout layout = SheetLayout::of(sheet);
   if (layout.width > kLargestPicture || layout.height > kLargestPicture) {
     throw std::invalid_argument("a picture of " + std::to_string(layout.width) + " x " +
@@ -268,15 +267,14 @@ Image drawn(const Sheet& sheet, const DrawOptions& options) {
       add_tile(window, sheet, layout, row, column, weld);
     }
     // What follows this loop takes as long as all of it.
-    report_progress(options.progress,
-                    0.5 * static_cast<double>(row + 1) / static_cast<double>(sheet.rows.size()));
+    context.report(0.5 * static_cast<double>(row + 1) / static_cast<double>(sheet.rows.size()));
   }
   const auto overlay = empty_renderer({0, 0, layout.width, layout.height}, layout);
   overlay->SetLayer(1);
   annotate(*overlay, sheet, layout);
   window.AddRenderer(overlay);
   Image image = offscreen.image();
-  report_progress(options.progress, 1);
+  context.report(1);
   return image;
 }
 

@@ -12,24 +12,28 @@ NumericArray read_npy(const std::filesystem::path& path) {
   return npy_values(path.string(), bytes, read_npy_header(path.string(), bytes));
 }
 
-Frames read_npy_frames(const std::filesystem::path& path, int threads) {
+Frames read_npy_frames(const std::filesystem::path& path, const Context& context) {
   const auto cache = open_npy_cache(path);
   Frames frames(cache->frames(), 3 * Eigen::Index{cache->vertices()});
-  parallel_for(cache->frames(), threads, [&](int frame) {
-    cache->read(frame, FramesView(frames.row(frame).data(), 1, frames.cols()));
-  });
+  parallel_for(
+      cache->frames(),
+      [&](int frame) {
+        cache->read(frame, FramesView(frames.row(frame).data(), 1, frames.cols()));
+      },
+      context);
   return frames;
 }
 
 void write_npy_frames(const std::filesystem::path& path, const Frames& frames,
-                      bool single_precision, int threads) {
+                      bool single_precision, const Context& context) {
   const auto rows = static_cast<std::size_t>(frames.rows());
   const auto columns = static_cast<std::size_t>(frames.cols());
   const PointCacheTarget array = begin_npy_cache(path, rows, columns / 3, single_precision);
-  parallel_for(static_cast<int>(rows), threads, [&](int frame) {
+  const auto write = [&](int frame) {
     array.positions.write(*array.file, columns * static_cast<std::size_t>(frame),
                           {frames.row(frame).data(), columns});
-  });
+  };
+  parallel_for(static_cast<int>(rows), write, context);
   array.file->close();
 }
 

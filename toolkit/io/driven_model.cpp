@@ -97,8 +97,9 @@ OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path&
   return open;
 }
 
-OpenSequence open_scene(const fs::path& path, const SequenceSource& source) {
-  Scene scene = read_scene(path);
+OpenSequence open_scene(const fs::path& path, const SequenceSource& source,
+                        const Context& context) {
+  Scene scene = read_scene(path, context);
   const auto frames = static_cast<int>(scene.weights.rows());
   OpenSequence open;
   if (scene.frames && !source.weights) {

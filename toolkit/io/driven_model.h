@@ -5,6 +5,7 @@
 
 #include "toolkit/io/sequence_options.h"
 #include "toolkit/io/weight_track.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/model/blendshape_model.h"
 
 /// Sequences that are a model driven by weights. Internal to those that open sequences.
@@ -21,7 +22,8 @@ OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const std::file
                    WeightTrack track);
 
 /// A scene's file: driven by `source.weights`, else what it performs, else its neutral. Throws
-/// IoError, MismatchError.
-OpenSequence open_scene(const std::filesystem::path& path, const SequenceSource& source);
+/// IoError, MismatchError, Cancelled.
+OpenSequence open_scene(const std::filesystem::path& path, const SequenceSource& source,
+                        const Context& context = {});
 
 }  // namespace mimetra

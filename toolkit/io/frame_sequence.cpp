@@ -102,15 +102,17 @@ class FolderSink : public FrameSink {
  public:
   FolderSink(const SequenceHeader& header, const fs::path& target,
              const SequenceWriteOptions& options, const ExtraFiles& extra,
-             const WrittenMaterials& materials)
+             const WrittenMaterials& materials, const Context& context)
       : header_(header),
         extent_(extent(header.rest)),
         target_(target),
         extension_('.' + std::string(choice_name(options.format))),
         outputs_(options.overwrite, options.inputs, options.together),
         folder_(outputs_.add(target, PendingOutput::Kind::folder)),
-        writer_(*header.connectivity, extension_, options.double_precision, {}, target.string()),
-        exact_writer_(*header.connectivity, extension_, true) {
+        writer_(*header.connectivity, extension_, options.double_precision, {}, target.string(),
+                context.part(0, 0.5)),
+        exact_writer_(*header.connectivity, extension_, true, {}, target.string(),
+                      context.part(0.5, 1)) {
     const auto frames = static_cast<int>(header.times.size());
     for (int frame = 0; frame < frames; ++frame) {
       files_.push_back(target / frame_name(frame, frames, extension_));
@@ -164,7 +166,7 @@ class FolderSink : public FrameSink {
 }  // namespace
 
 OpenSequence open_frames(const FrameSeries& series, const fs::path& folder,
-                         const SequenceSource& source) {
+                         const SequenceSource& source, const Context& context) {
   const std::vector<fs::path>& files = series.frames;
   const std::vector<int> chosen = selected_frames(source.frames, static_cast<int>(files.size()));
   OpenSequence open;
@@ -173,7 +175,8 @@ OpenSequence open_frames(const FrameSeries& series, const fs::path& folder,
   std::vector<fs::path> frames = open.files;
   // Where files name no vertices, the first frame says which corners are one, asked for or not.
   const bool names_vertices = mesh_codec(files[0].extension().string())->read;
-  auto reader = std::make_unique<const MeshFileReader>(names_vertices ? frames[0] : files[0]);
+  auto reader =
+      std::make_unique<const MeshFileReader>(names_vertices ? frames[0] : files[0], context);
   SequenceHeader header;
   header.connectivity = std::make_shared<const Connectivity>(reader->mesh().connectivity);
   const auto count = static_cast<int>(files.size());
@@ -199,15 +202,16 @@ OpenSequence open_frames(const FrameSeries& series, const fs::path& folder,
 
 std::unique_ptr<FrameSink> begin_folder(const SequenceHeader& header, const fs::path& target,
                                         const SequenceWriteOptions& options,
-                                        const ExtraFiles& extra) {
+                                        const ExtraFiles& extra, const Context& context) {
   if (options.format != MeshFormat::obj || !header.connectivity->materials) {
-    return std::make_unique<FolderSink>(header, target, options, extra, WrittenMaterials());
+    return std::make_unique<FolderSink>(header, target, options, extra, WrittenMaterials(),
+                                        context);
   }
   const WrittenMaterials materials = materials_in_folder(*header.connectivity, target);
   SequenceHeader named = header;
   named.connectivity =
       std::make_shared<const Connectivity>(with_library(*header.connectivity, materials.name));
-  return std::make_unique<FolderSink>(named, target, options, extra, materials);
+  return std::make_unique<FolderSink>(named, target, options, extra, materials, context);
 }
 
 }  // namespace mimetra

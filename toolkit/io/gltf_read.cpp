@@ -30,8 +30,11 @@ struct PlacedPart {
 /// Makes the parts of a scene.
 class GltfReader {
  public:
-  explicit GltfReader(const fs::path& path)
-      : document_(read_gltf_document(path)), values_(document_), placed_(placed_nodes(document_)) {
+  GltfReader(const fs::path& path, const Context& context)
+      : context_(context),
+        document_(read_gltf_document(path)),
+        values_(document_),
+        placed_(placed_nodes(document_)) {
     for (const PlacedNode& node : placed_) worlds_.emplace(node.node, node.world);
   }
 
@@ -90,6 +93,7 @@ class GltfReader {
           vertices += static_cast<double>(document_.accessors[*primitive.positions].count);
         }
         targets = std::max(targets, primitive.targets.size());
+        all_targets_ += primitive.targets.size();
         has_materials_ = has_materials_ || primitive.material;
       }
     }
@@ -174,6 +178,7 @@ class GltfReader {
     placement.apply(part.positions, false);
     made.mirrored = placement.mirrored(vertices);
     for (std::size_t j = 0; j < primitive.targets.size(); ++j) {
+      context_.report(static_cast<double>(targets_read_++) / static_cast<double>(all_targets_));
       const bool is_named = j < mesh.target_names.size() && !mesh.target_names[j].empty();
       SceneTarget target{is_named ? mesh.target_names[j] : number_name("target_", j),
                          Positions::Zero(vertices, 3)};
@@ -478,6 +483,7 @@ class GltfReader {
          "motion, eyes)");
   }
 
+  const Context& context_;
   GltfDocument document_;
   GltfValues values_;
   std::vector<PlacedNode> placed_;
@@ -485,15 +491,16 @@ class GltfReader {
   GltfMotion motion_;
   std::set<std::size_t> joints_;
   std::map<std::size_t, bool> brings_from_corner_;  ///< by material
-  bool has_materials_ = false;                      ///< whether a primitive that is shown has one
+  std::size_t all_targets_ = 0, targets_read_ = 0;
+  bool has_materials_ = false;  ///< whether a primitive that is shown has one
   std::set<std::string> left_out_, unread_;
   std::vector<std::string> notes_, motion_notes_;
 };
 
 }  // namespace
 
-Scene read_gltf(const fs::path& path) {
-  return GltfReader(path).read();
+Scene read_gltf(const fs::path& path, const Context& context) {
+  return GltfReader(path, context).read();
 }
 
 }  // namespace mimetra

@@ -191,7 +191,7 @@ class GltfFile {
   };
 
   GltfFile(const Plan& plan, const fs::path& target, const SequenceWriteOptions& options,
-           const ExtraFiles& extra)
+           const ExtraFiles& extra, const Context& context)
       : target_(target),
         is_binary_(lower_extension(target) == ".glb"),
         names_(plan.targets),
@@ -203,7 +203,7 @@ class GltfFile {
     const Positions& rest = plan.header.rest;
     check_single_precision(target, {rest.data(), rest.rows(), 3}, extent(rest));
     if (plan.weights.rows() > 0) check_gltf_times(target, plan.header.times);
-    std::vector<std::pair<std::size_t, std::string>> known = laid_out(plan);
+    std::vector<std::pair<std::size_t, std::string>> known = laid_out(plan, context);
     check_length();
     const fs::path path = outputs_.add(target, PendingOutput::Kind::file);
     const fs::path data = is_binary_ ? path
@@ -266,7 +266,8 @@ class GltfFile {
   fs::path data_path() const { return fs::path(target_).replace_extension(".bin"); }
 
   /// Decides where everything stands; returns what is known already of it.
-  std::vector<std::pair<std::size_t, std::string>> laid_out(const Plan& plan) {
+  std::vector<std::pair<std::size_t, std::string>> laid_out(const Plan& plan,
+                                                            const Context& context) {
     std::vector<std::pair<std::size_t, std::string>> known;
     const auto put = [&](std::string bytes, int use = 0) {
       const std::size_t view = layout_.add_view(bytes.size(), use);
@@ -302,6 +303,7 @@ class GltfFile {
           kFloatType, "VEC2", vertices);
     }
     for (std::size_t j = 0; j < names_.size(); ++j) {
+      context.report(static_cast<double>(j) / static_cast<double>(names_.size()));
       if (plan.displacements) {
         const double* displacements = plan.displacements->col(static_cast<Eigen::Index>(j)).data();
         add_known_target(displacements, put);
@@ -488,11 +490,11 @@ GltfFile::Plan plan_of_frames(const SequenceHeader& header) {
 class GltfFrames : public FrameSink {
  public:
   GltfFrames(const SequenceHeader& header, const fs::path& target,
-             const SequenceWriteOptions& options, const ExtraFiles& extra)
+             const SequenceWriteOptions& options, const ExtraFiles& extra, const Context& context)
       : target_(target),
         longest_(extent(header.rest)),
         is_still_(stands_still(header)),
-        file_(plan_of_frames(header), target, options, extra) {}
+        file_(plan_of_frames(header), target, options, extra, context) {}
 
   void write(int first, const Frames& poses) override {
     check_single_range(target_, first, poses);
@@ -516,34 +518,36 @@ class GltfFrames : public FrameSink {
 
 std::vector<fs::path> write_driven(const SequenceHeader& header, const ShapeBasis& expressions,
                                    const Eigen::MatrixXd& weights, const fs::path& target,
-                                   const SequenceWriteOptions& options, const ExtraFiles& extra) {
+                                   const SequenceWriteOptions& options, const ExtraFiles& extra,
+                                   const Context& context) {
   const GltfFile::Plan plan{header, expressions.names, &expressions.displacements, weights};
-  return GltfFile(plan, target, options, extra).commit();
+  return GltfFile(plan, target, options, extra, context).commit();
 }
 
 }  // namespace
 
 std::unique_ptr<FrameSink> begin_gltf(const SequenceHeader& header, const fs::path& target,
-                                      const SequenceWriteOptions& options,
-                                      const ExtraFiles& extra) {
+                                      const SequenceWriteOptions& options, const ExtraFiles& extra,
+                                      const Context& context) {
   if (header.times.size() > kMostGltfFrames) {
     throw MismatchError(target.string() + ": " + std::to_string(header.times.size()) +
                         " frames that no model drives would be as many morph targets, expected " +
                         std::to_string(kMostGltfFrames) +
                         " at most; write .pc2, .npz or .pvd, or a part with option 'frames'");
   }
-  return std::make_unique<GltfFrames>(header, target, options, extra);
+  return std::make_unique<GltfFrames>(header, target, options, extra, context);
 }
 
 std::vector<fs::path> write_gltf(const Animation& animation, const fs::path& target,
-                                 const SequenceWriteOptions& options, const ExtraFiles& extra) {
+                                 const SequenceWriteOptions& options, const ExtraFiles& extra,
+                                 const Context& context) {
   return write_driven(animation.header(), animation.model().expressions(), animation.weights(),
-                      target, options, extra);
+                      target, options, extra, context);
 }
 
 std::vector<fs::path> write_gltf_model(const MorphableModel& model, const WeightTrack& performance,
                                        const fs::path& target, const SequenceWriteOptions& options,
-                                       const ExtraFiles& extra) {
+                                       const ExtraFiles& extra, const Context& context) {
   if (model.identities().size() > 0) {
     throw MismatchError(target.string() + ": the model has " +
                         std::to_string(model.identities().size()) +
@@ -553,7 +557,7 @@ std::vector<fs::path> write_gltf_model(const MorphableModel& model, const Weight
   Eigen::MatrixXd weights;
   if (!performance.names.empty()) weights = weights_for(performance, model.expressions().names);
   if (header.times.size() == 0) header.times = default_times(static_cast<int>(weights.rows()));
-  return write_driven(header, model.expressions(), weights, target, options, extra);
+  return write_driven(header, model.expressions(), weights, target, options, extra, context);
 }
 
 }  // namespace mimetra

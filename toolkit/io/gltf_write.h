@@ -6,6 +6,7 @@
 
 #include "toolkit/io/sequence_options.h"
 #include "toolkit/io/weight_track.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/model/animation.h"
 #include "toolkit/model/morphable_model.h"
 
@@ -21,13 +22,14 @@ constexpr int kMostGltfFrames = 1000;
 /// or too close for single precision, and poses too far from the origin for it.
 std::unique_ptr<FrameSink> begin_gltf(const SequenceHeader& header,
                                       const std::filesystem::path& target,
-                                      const SequenceWriteOptions& options, const ExtraFiles& extra);
+                                      const SequenceWriteOptions& options, const ExtraFiles& extra,
+                                      const Context& context = {});
 
-/// A model and its weights over time. Throws the same.
+/// A model and its weights over time. Throws the same, and Cancelled.
 std::vector<std::filesystem::path> write_gltf(const Animation& animation,
                                               const std::filesystem::path& target,
                                               const SequenceWriteOptions& options,
-                                              const ExtraFiles& extra);
+                                              const ExtraFiles& extra, const Context& context = {});
 
 /// A model with its expressions, and weights over time where `performance` has names. Throws the
 /// same; MismatchError for a model with identities, for which glTF has no place.
@@ -35,6 +37,7 @@ std::vector<std::filesystem::path> write_gltf_model(const MorphableModel& model,
                                                     const WeightTrack& performance,
                                                     const std::filesystem::path& target,
                                                     const SequenceWriteOptions& options,
-                                                    const ExtraFiles& extra);
+                                                    const ExtraFiles& extra,
+                                                    const Context& context = {});
 
 }  // namespace mimetra

@@ -38,8 +38,8 @@ class MddFile : public StoredPointCache {
   }
 };
 
-OpenSequence open_mdd(const fs::path& path, const SequenceSource& source) {
-  return open_point_cache(std::make_unique<const MddFile>(path), source);
+OpenSequence open_mdd(const fs::path& path, const SequenceSource& source, const Context& context) {
+  return open_point_cache(std::make_unique<const MddFile>(path), source, {}, context);
 }
 
 /// Seconds since midnight may be too many for single precision.
@@ -69,7 +69,8 @@ PointCacheTarget begin_mdd_file(const SequenceHeader& header, const fs::path& pa
 }
 
 std::unique_ptr<FrameSink> begin_mdd(const SequenceHeader& header, const fs::path& target,
-                                     const SequenceWriteOptions& options, const ExtraFiles& extra) {
+                                     const SequenceWriteOptions& options, const ExtraFiles& extra,
+                                     const Context&) {
   check_rounded_times(target, header.times);
   return write_point_cache(header, target, options, extra,
                            [&](const fs::path& path) { return begin_mdd_file(header, path); });

@@ -12,6 +12,7 @@
 #include "toolkit/io/held_parts.h"
 #include "toolkit/io/mesh_formats.h"
 #include "toolkit/io/mesh_layout.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/tri_mesh.h"
 
 /// The table of mesh formats: one reader and one writer for each, on bytes in memory. Internal to
@@ -32,13 +33,22 @@ struct MeshContent {
   int first_index = 0;
 };
 
-/// Throw IoError that names `path` and the line or the element.
-MeshContent read_obj(const std::string& path, std::string_view bytes);
-MeshContent read_ply(const std::string& path, std::string_view bytes);
-MeshContent read_off(const std::string& path, std::string_view bytes);
-MeshContent read_om(const std::string& path, std::string_view bytes);
+/// Throw IoError that names `path` and the line or the element, and Cancelled.
+MeshContent read_obj(const std::string& path, std::string_view bytes, const Context&);
+MeshContent read_ply(const std::string& path, std::string_view bytes, const Context&);
+MeshContent read_off(const std::string& path, std::string_view bytes, const Context&);
+MeshContent read_om(const std::string& path, std::string_view bytes, const Context&);
 /// The corners of all triangles, one after the other, not welded (x y z each).
-std::vector<double> read_stl_corners(const std::string& path, std::string_view bytes);
+std::vector<double> read_stl_corners(const std::string& path, std::string_view bytes,
+                                     const Context&);
+
+/// Reports progress once in some thousand lines or elements: `left` of `size` are not done yet.
+inline void report_element(const Context& context, std::size_t element, std::size_t left,
+                           std::size_t size) {
+  constexpr std::size_t kElements = 1 << 14;
+  if (element % kElements != 0 || size == 0) return;
+  context.report(1 - static_cast<double>(left) / static_cast<double>(size));
+}
 
 /// The bytes of all files of one mesh, in a format and a precision.
 struct MeshFrame {
@@ -49,32 +59,36 @@ struct MeshFrame {
 };
 
 /// Coordinates are floats unless `double_precision` or a texture needs more, in STL always. No
-/// reference to the connectivity is kept.
-MeshFrame obj_frame(const Connectivity& connectivity, bool double_precision);
-MeshFrame ply_frame(const Connectivity& connectivity, bool double_precision);
-MeshFrame off_frame(const Connectivity& connectivity, bool double_precision);
-MeshFrame stl_frame(const Connectivity& connectivity, bool double_precision);
+/// reference to the connectivity is kept. Throw Cancelled.
+MeshFrame obj_frame(const Connectivity& connectivity, bool double_precision, const Context&);
+MeshFrame ply_frame(const Connectivity& connectivity, bool double_precision, const Context&);
+MeshFrame off_frame(const Connectivity& connectivity, bool double_precision, const Context&);
+MeshFrame stl_frame(const Connectivity& connectivity, bool double_precision, const Context&);
 /// Throws MismatchError that names a vertex or faces which half-edges cannot hold.
-MeshFrame om_frame(const Connectivity& connectivity, bool double_precision);
+MeshFrame om_frame(const Connectivity& connectivity, bool double_precision, const Context&);
 
 /// What ends OpenMesh's files: fields as properties, and a last chunk. Throws MismatchError that
 /// names a field which they cannot hold.
-std::string om_properties(const std::vector<Field>& fields, const Connectivity& connectivity);
+std::string om_properties(const std::vector<Field>& fields, const Connectivity& connectivity,
+                          const Context&);
 
 /// A format, declared once.
 struct MeshCodec {
   MeshFormat format;
   /// Null for STL, whose files name no vertices.
-  MeshContent (*read)(const std::string& path, std::string_view bytes);
+  MeshContent (*read)(const std::string& path, std::string_view bytes, const Context&);
   /// From the bytes of the first file and its vertex count; null for a format whose files have
   /// nothing in common.
-  std::unique_ptr<const MeshLayout> (*layout)(std::string first, std::size_t vertices);
-  MeshFrame (*frame)(const Connectivity& connectivity, bool double_precision);
+  std::unique_ptr<const MeshLayout> (*layout)(std::string first, std::size_t vertices,
+                                              const Context&);
+  MeshFrame (*frame)(const Connectivity& connectivity, bool double_precision, const Context&);
   /// In its files; a rest pose stands beside them.
   HeldParts holds;
   /// Fields in a file, and the bytes that end it with them; null for a format without.
-  FieldsRead (*fields)(const std::filesystem::path& path, const Connectivity&) = nullptr;
-  std::string (*properties)(const std::vector<Field>& fields, const Connectivity&) = nullptr;
+  FieldsRead (*fields)(const std::filesystem::path& path, const Connectivity&,
+                       const Context&) = nullptr;
+  std::string (*properties)(const std::vector<Field>& fields, const Connectivity&,
+                            const Context&) = nullptr;
 
   /// ".ply".
   std::string extension() const;

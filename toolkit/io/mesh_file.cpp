@@ -81,15 +81,16 @@ void check_faces(const std::string& path, const MeshContent& content) {
   }
 }
 
-MeshContent read_checked(const fs::path& path, std::string_view bytes) {
-  MeshContent content = mesh_codec(lower_extension(path))->read(path.string(), bytes);
+MeshContent read_checked(const fs::path& path, std::string_view bytes, const Context& context) {
+  MeshContent content = mesh_codec(lower_extension(path))->read(path.string(), bytes, context);
   check_finite(path.string(), content.coordinates, "vertex", content.first_index);
   check_faces(path.string(), content);
   return content;
 }
 
-std::vector<double> read_checked_corners(const fs::path& path, std::string_view bytes) {
-  std::vector<double> corners = read_stl_corners(path.string(), bytes);
+std::vector<double> read_checked_corners(const fs::path& path, std::string_view bytes,
+                                         const Context& context) {
+  std::vector<double> corners = read_stl_corners(path.string(), bytes, context);
   if (corners.empty()) throw IoError(path.string(), "has no faces");
   constexpr std::size_t kMost = std::numeric_limits<int>::max() / 3;
   if (corners.size() / 3 > kMost) {
@@ -101,8 +102,8 @@ std::vector<double> read_checked_corners(const fs::path& path, std::string_view 
 }
 
 /// Vertices in the order in which the file first uses their place.
-TriMesh read_stl(const fs::path& path, std::string_view bytes) {
-  const Positions corners = positions_of(read_checked_corners(path, bytes));
+TriMesh read_stl(const fs::path& path, std::string_view bytes, const Context& context) {
+  const Positions corners = positions_of(read_checked_corners(path, bytes, context));
   const Weld weld = Weld::exact(corners);
   std::vector<int> vertex_of(weld.representative.size());
   Positions positions(corners.rows() - weld.count, 3);
@@ -152,8 +153,9 @@ void check_parting(const fs::path& path, const std::vector<int>& corners_at,
 }
 
 Positions gathered_corners(const fs::path& path, std::string_view bytes,
-                           const Connectivity& expected, const fs::path& expected_path) {
-  const Positions corners = positions_of(read_checked_corners(path, bytes));
+                           const Connectivity& expected, const fs::path& expected_path,
+                           const Context& context) {
+  const Positions corners = positions_of(read_checked_corners(path, bytes, context));
   const Eigen::Index triangles = expected.triangles.rows();
   if (corners.rows() != 3 * triangles) {
     throw_mismatch(path, corners.rows() / 3, "triangles", triangles, expected_path);
@@ -211,9 +213,9 @@ bool names_no_vertices(const fs::path& path) {
   return !mesh_codec(lower_extension(path))->read;
 }
 
-TriMesh read_mesh(const fs::path& path, std::string_view bytes) {
-  if (names_no_vertices(path)) return read_stl(path, bytes);
-  MeshContent content = read_checked(path, bytes);
+TriMesh read_mesh(const fs::path& path, std::string_view bytes, const Context& context) {
+  if (names_no_vertices(path)) return read_stl(path, bytes, context);
+  MeshContent content = read_checked(path, bytes, context);
   TriMesh mesh{positions_of(content.coordinates), {}};
   mesh.connectivity = Connectivity::from_polygons(static_cast<int>(mesh.positions.rows()),
                                                   std::move(content.polygons));
@@ -224,9 +226,10 @@ TriMesh read_mesh(const fs::path& path, std::string_view bytes) {
 }
 
 Positions read_positions(const fs::path& path, std::string_view bytes, const Connectivity& expected,
-                         const fs::path& expected_path) {
-  if (names_no_vertices(path)) return gathered_corners(path, bytes, expected, expected_path);
-  const MeshContent content = read_checked(path, bytes);
+                         const fs::path& expected_path, const Context& context) {
+  if (names_no_vertices(path))
+    return gathered_corners(path, bytes, expected, expected_path, context);
+  const MeshContent content = read_checked(path, bytes, context);
   const auto vertices = static_cast<long long>(content.coordinates.size() / 3);
   if (vertices != expected.vertices) {
     throw_mismatch(path, vertices, "vertices", expected.vertices, expected_path);
@@ -237,20 +240,22 @@ Positions read_positions(const fs::path& path, std::string_view bytes, const Con
 
 }  // namespace
 
-TriMesh read_mesh(const fs::path& path) {
-  return read_mesh(path, read_bytes(path));
+TriMesh read_mesh(const fs::path& path, const Context& context) {
+  return read_mesh(path, read_bytes(path), context);
 }
 
 Positions read_positions(const fs::path& path, const Connectivity& expected,
-                         const fs::path& expected_path) {
-  return read_positions(path, read_bytes(path), expected, expected_path);
+                         const fs::path& expected_path, const Context& context) {
+  return read_positions(path, read_bytes(path), expected, expected_path, context);
 }
 
-MeshFileReader::MeshFileReader(fs::path first) : first_(std::move(first)) {
+MeshFileReader::MeshFileReader(fs::path first, const Context& context) : first_(std::move(first)) {
+  constexpr double kMeshShare = 0.9;
   std::string bytes = read_bytes(first_);
-  mesh_ = read_mesh(first_, bytes);
+  mesh_ = read_mesh(first_, bytes, context.part(0, kMeshShare));
   if (const auto layout = mesh_codec(lower_extension(first_))->layout) {
-    layout_ = layout(std::move(bytes), static_cast<std::size_t>(mesh_.positions.rows()));
+    layout_ = layout(std::move(bytes), static_cast<std::size_t>(mesh_.positions.rows()),
+                     context.part(kMeshShare, 1));
   }
 }
 
@@ -264,7 +269,7 @@ void MeshFileReader::read(const fs::path& path, std::span<double> coordinates) c
   const std::string bytes = read_bytes(path);
   const bool same_format = lower_extension(path) == lower_extension(first_);
   if (layout_ && same_format && layout_->read(bytes, coordinates)) return;
-  const Positions positions = read_positions(path, bytes, mesh_.connectivity, first_);
+  const Positions positions = read_positions(path, bytes, mesh_.connectivity, first_, {});
   std::copy_n(positions.data(), positions.size(), coordinates.begin());
 }
 

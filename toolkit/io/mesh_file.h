@@ -8,7 +8,9 @@
 
 #include "toolkit/io/held_parts.h"
 #include "toolkit/io/mesh_formats.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/fields.h"
+#include "toolkit/mesh/option.h"
 #include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
@@ -19,15 +21,15 @@ struct MeshFrame;
 /// Reads one mesh by its extension: .obj, .ply (ascii, binary little and big endian), .off, .om
 /// (OpenMesh's own), .stl (ascii and binary; corners at one place become one vertex, in order of
 /// first use). Vertices and polygons keep the file's order and count, whatever the surface looks
-/// like. Throws IoError.
-TriMesh read_mesh(const std::filesystem::path& path);
+/// like. Throws IoError, Cancelled.
+TriMesh read_mesh(const std::filesystem::path& path, const Context& context = {});
 
 /// Reads the positions of a further file of the same mesh and compares its faces with `expected`.
 /// For STL, corners are gathered by `expected`'s triangles, so that vertices which part or meet in
-/// this frame stay what they are. Throws IoError; MismatchError where the vertex count or a face
-/// differs; `expected_path` is the file that the message compares with.
+/// this frame stay what they are. Throws IoError; MismatchError if the vertex count or a face
+/// differs; Cancelled. `expected_path` is the file that the message compares with.
 Positions read_positions(const std::filesystem::path& path, const Connectivity& expected,
-                         const std::filesystem::path& expected_path);
+                         const std::filesystem::path& expected_path, const Context& context = {});
 
 /// Reads the files of one mesh: the first one whole, of a further one only what is new in it.
 ///
@@ -37,7 +39,7 @@ Positions read_positions(const std::filesystem::path& path, const Connectivity& 
 class MeshFileReader {
  public:
   /// Throws as read_mesh.
-  explicit MeshFileReader(std::filesystem::path first);
+  explicit MeshFileReader(std::filesystem::path first, const Context& context = {});
   ~MeshFileReader();
 
   const std::filesystem::path& first() const { return first_; }
@@ -66,17 +68,21 @@ struct MeshWriteOptions {
   std::string extension = {};
   /// As properties of .om; of other formats none are written.
   std::vector<Field> fields = {};
+
+  static constexpr Option kDoublePrecision{"double_precision", &MeshWriteOptions::double_precision};
+  static constexpr auto declared() { return std::tuple(kDoublePrecision); }
 };
 
 /// Writes one mesh by its extension with its own polygons: .obj (with texture coordinates and
 /// groups; not with the library of its materials, which a sequence has beside it), .ply (binary
 /// little endian, with texture coordinates), .off, .om (with texture coordinates), .stl (binary,
-/// triangles). Throws OutputError, MismatchError for what the precision or the format cannot hold.
-/// Not atomic: see PendingOutput.
+/// triangles). Throws OutputError, MismatchError for values that the precision or the format
+/// cannot hold, Cancelled. Not atomic: see PendingOutput.
 void write_mesh(const std::filesystem::path& path, const PositionsView& positions,
-                const Connectivity& connectivity, const MeshWriteOptions& = {});
+                const Connectivity& connectivity, const MeshWriteOptions& = {},
+                const Context& context = {});
 void write_mesh(const std::filesystem::path& path, const TriMesh& mesh,
-                const MeshWriteOptions& = {});
+                const MeshWriteOptions& = {}, const Context& context = {});
 
 /// Writes poses of one mesh, each to a file of its own. What the files have in common is made once.
 /// Files may be written from several threads.
@@ -86,7 +92,7 @@ class MeshFileWriter {
   /// not a mesh format, MismatchError that begins with `name` for what .om cannot hold.
   MeshFileWriter(const Connectivity& connectivity, const std::string& extension,
                  bool double_precision = false, const std::vector<Field>& fields = {},
-                 const std::string& name = "the mesh");
+                 const std::string& name = "the mesh", const Context& context = {});
   ~MeshFileWriter();
 
   /// Writes what write_mesh() writes. Throws OutputError; MismatchError that names a vertex whose

@@ -13,8 +13,8 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-OpenSequence open_mesh(const fs::path& path, const SequenceSource& source) {
-  return open_frames({{path}}, {}, source);
+OpenSequence open_mesh(const fs::path& path, const SequenceSource& source, const Context& context) {
+  return open_frames({{path}}, {}, source, context);
 }
 
 class MeshSink : public FrameSink {
@@ -69,8 +69,8 @@ class MeshSink : public FrameSink {
 };
 
 std::unique_ptr<FrameSink> begin_mesh(const SequenceHeader& header, const fs::path& target,
-                                      const SequenceWriteOptions& options,
-                                      const ExtraFiles& extra) {
+                                      const SequenceWriteOptions& options, const ExtraFiles& extra,
+                                      const Context&) {
   if (header.times.size() != 1) {
     throw MismatchError(target.string() + ": one mesh file cannot hold " +
                         std::to_string(header.times.size()) +

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "toolkit/mesh/context.h"
+
 /// Where positions stand in the files of one mesh. Internal to mesh_file.h.
 namespace mimetra {
 
@@ -20,11 +22,13 @@ class MeshLayout {
   virtual bool read(std::string_view bytes, std::span<double> coordinates) const = 0;
 };
 
-/// From the bytes of a first file that the format's reader accepts. Null where the file is written
-/// in a way that only that reader knows.
-/// `vertices`: how many the reader found.
-std::unique_ptr<const MeshLayout> obj_layout(std::string first, std::size_t vertices);
-std::unique_ptr<const MeshLayout> ply_layout(std::string first, std::size_t vertices);
-std::unique_ptr<const MeshLayout> off_layout(std::string first, std::size_t vertices);
+/// Learn the layout from the bytes of a first file, in which the format's reader found so many
+/// vertices. Null if the file is written in a way that only that reader knows. Throw Cancelled.
+std::unique_ptr<const MeshLayout> obj_layout(std::string first, std::size_t vertices,
+                                             const Context&);
+std::unique_ptr<const MeshLayout> ply_layout(std::string first, std::size_t vertices,
+                                             const Context&);
+std::unique_ptr<const MeshLayout> off_layout(std::string first, std::size_t vertices,
+                                             const Context&);
 
 }  // namespace mimetra

@@ -27,14 +27,17 @@ char* put_shortest(char* text, Number value) {
 
 MeshFileWriter::MeshFileWriter(const Connectivity& connectivity, const std::string& extension,
                                bool double_precision, const std::vector<Field>& fields,
-                               const std::string& name)
+                               const std::string& name, const Context& context)
     : vertices_(connectivity.vertices),
       single_precision_(!double_precision || lower_case(extension) == ".stl") {
+  constexpr double kFrameShare = 0.9;
   const MeshCodec* codec = mesh_codec(extension);
   if (!codec) throw std::invalid_argument(unknown_mesh_extension(lower_case(extension)));
   try {
-    MeshFrame frame = codec->frame(connectivity, double_precision);
-    if (codec->properties) frame.after += codec->properties(fields, connectivity);
+    MeshFrame frame = codec->frame(connectivity, double_precision, context.part(0, kFrameShare));
+    if (codec->properties) {
+      frame.after += codec->properties(fields, connectivity, context.part(kFrameShare, 1));
+    }
     frame_ = std::make_unique<const MeshFrame>(std::move(frame));
   } catch (const MismatchError& error) {
     throw MismatchError(name + ": " + error.what());
@@ -61,20 +64,24 @@ void MeshFileWriter::write(const fs::path& path, const PositionsView& positions)
 }
 
 void write_mesh(const fs::path& path, const PositionsView& positions,
-                const Connectivity& connectivity, const MeshWriteOptions& options) {
+                const Connectivity& connectivity, const MeshWriteOptions& options,
+                const Context& context) {
+  check_options(options);
+  context.report(0);
   const std::string extension =
       lower_case(options.extension.empty() ? path.extension().string() : options.extension);
   if (!is_mesh_extension(extension)) {
     throw OutputError(path.string(), unknown_mesh_extension(extension));
   }
   MeshFileWriter(connectivity, extension, options.double_precision, options.fields,
-                 committed_name(path).string())
+                 committed_name(path).string(), context)
       .write(path, positions);
 }
 
-void write_mesh(const fs::path& path, const TriMesh& mesh, const MeshWriteOptions& options) {
+void write_mesh(const fs::path& path, const TriMesh& mesh, const MeshWriteOptions& options,
+                const Context& context) {
   write_mesh(path, PositionsView(mesh.positions.data(), mesh.positions.rows(), 3),
-             mesh.connectivity, options);
+             mesh.connectivity, options, context);
 }
 
 char* put_number(char* text, double value, bool double_precision) {

@@ -183,7 +183,8 @@ Parts parts_of(const fs::path& folder) {
 }
 
 /// Absolute shapes of a folder, minus the neutral.
-ShapeBasis read_shapes(const fs::path& folder, const MeshFileReader& neutral, int threads) {
+ShapeBasis read_shapes(const fs::path& folder, const MeshFileReader& neutral,
+                       const Context& context) {
   ShapeBasis basis;
   std::vector<fs::path> files;
   for (const fs::path& file : meshes_in(folder)) {
@@ -195,18 +196,19 @@ ShapeBasis read_shapes(const fs::path& folder, const MeshFileReader& neutral, in
   if (files.empty()) throw IoError(folder.string(), "holds no .obj, .ply, .off or .stl file");
   const Positions& mean = neutral.mesh().positions;
   basis.displacements.resize(mean.size(), static_cast<Eigen::Index>(files.size()));
-  parallel_for(static_cast<int>(files.size()), threads, [&](int j) {
+  const auto read = [&](int j) {
     auto shape = basis.displacements.col(j);
     neutral.read(files[static_cast<std::size_t>(j)],
                  {shape.data(), static_cast<std::size_t>(shape.size())});
     shape -= Eigen::Map<const Eigen::VectorXd>(mean.data(), mean.size());
-  });
+  };
+  parallel_for(static_cast<int>(files.size()), read, context);
   return basis;
 }
 
 ShapeBasis shapes_or_none(const std::optional<fs::path>& folder, const MeshFileReader& neutral,
-                          int threads) {
-  if (folder) return read_shapes(*folder, neutral, threads);
+                          const Context& context) {
+  if (folder) return read_shapes(*folder, neutral, context);
   return {{}, Eigen::MatrixXd(neutral.mesh().positions.size(), 0)};
 }
 
@@ -242,7 +244,8 @@ void check_shape_name(const std::string& name) {
                     "be empty, start with '.' or hold '/'");
 }
 
-void write_shapes(const fs::path& folder, const ShapeBasis& basis, const MorphableModel& model) {
+void write_shapes(const fs::path& folder, const ShapeBasis& basis, const MorphableModel& model,
+                  const Context& context) {
   if (basis.size() == 0) return;
   std::ranges::for_each(basis.names, check_shape_name);
   std::error_code error;
@@ -251,6 +254,7 @@ void write_shapes(const fs::path& folder, const ShapeBasis& basis, const Morphab
   }
   const MeshFileWriter writer(model.connectivity(), ".ply", true);
   for (int j = 0; j < basis.size(); ++j) {
+    context.report(static_cast<double>(j) / basis.size());
     const Eigen::VectorXd field = basis.displacements.col(j);
     const Positions shape =
         model.mean() + Eigen::Map<const Positions>(field.data(), model.vertices(), 3);
@@ -339,10 +343,10 @@ std::vector<fs::path> model_files(const fs::path& path) {
   return files;
 }
 
-MorphableModel read_model(const fs::path& path, int threads) {
+MorphableModel read_model(const fs::path& path, const Context& context) {
   std::error_code unreadable;
   if (!fs::exists(path, unreadable)) throw IoError(path.string(), "does not exist");
-  if (is_scene_file(path)) return MorphableModel(*read_scene(path).model);
+  if (is_scene_file(path)) return MorphableModel(*read_scene(path, context).model);
   const Parts parts = parts_of(path);
   if (parts.shape) {
     if (!parts.expressions) {
@@ -359,9 +363,10 @@ MorphableModel read_model(const fs::path& path, int threads) {
                             ? "; its meshes can be frames of a sequence, which is a source"
                             : ""));
   }
-  const MeshFileReader neutral(*parts.neutral);
-  ShapeBasis expressions = shapes_or_none(parts.expressions, neutral, threads);
-  ShapeBasis identities = shapes_or_none(parts.identities, neutral, threads);
+  const MeshFileReader neutral(*parts.neutral, context.part(0, 0));
+  const double half = parts.identities ? 0.5 : 1;
+  ShapeBasis expressions = shapes_or_none(parts.expressions, neutral, context.part(0, half));
+  ShapeBasis identities = shapes_or_none(parts.identities, neutral, context.part(half, 1));
   auto connectivity = std::make_shared<Connectivity>(neutral.mesh().connectivity);
   try {
     return MorphableModel(std::move(connectivity), neutral.mesh().positions, std::move(identities),
@@ -372,8 +377,8 @@ MorphableModel read_model(const fs::path& path, int threads) {
   }
 }
 
-BlendshapeModel read_person(const ModelSpec& spec, int threads) {
-  const MorphableModel model = read_model(spec.path, threads);
+BlendshapeModel read_person(const ModelSpec& spec, const Context& context) {
+  const MorphableModel model = read_model(spec.path, context);
   if (spec.fit) return model.person(fitted_identity(model.identities(), spec));
   Eigen::VectorXd alpha = Eigen::VectorXd::Zero(model.identities().size());
   for (const auto& [name, coefficient] : spec.identity) {
@@ -391,8 +396,8 @@ BlendshapeModel read_person(const ModelSpec& spec, int threads) {
   return model.person(alpha);
 }
 
-BlendshapeModel read_blendshapes(const std::string& text) {
-  return read_person(ModelSpec::parse(text));
+BlendshapeModel read_blendshapes(const std::string& text, const Context& context) {
+  return read_person(ModelSpec::parse(text), context);
 }
 
 bool is_model(const fs::path& path) {
@@ -407,13 +412,14 @@ bool is_model(const fs::path& path) {
 void write_model(const fs::path& folder, const MorphableModel& model,
                  const std::optional<WeightTrack>& performance, bool overwrite,
                  const std::vector<std::pair<std::string, std::string>>& extra,
-                 PendingOutputs* together) {
+                 PendingOutputs* together, const Context& context) {
   PendingOutputs outputs(overwrite, {}, together);
   const fs::path pending = outputs.add(folder, PendingOutput::Kind::folder);
   write_mesh(pending / "neutral.ply", PositionsView(model.mean().data(), model.mean().rows(), 3),
-             model.connectivity(), {.double_precision = true});
-  write_shapes(pending / "expressions", model.expressions(), model);
-  write_shapes(pending / "identities", model.identities(), model);
+             model.connectivity(), {.double_precision = true}, context.part(0, 0));
+  const double half = model.identities().size() > 0 ? 0.5 : 1;
+  write_shapes(pending / "expressions", model.expressions(), model, context.part(0, half));
+  write_shapes(pending / "identities", model.identities(), model, context.part(half, 1));
   if (performance) write_weights(pending / "performance.csv", *performance, false);
   for (const auto& [name, content] : extra) write_bytes(pending / name, content);
   outputs.commit();

@@ -8,6 +8,7 @@
 
 #include "toolkit/io/model_spec.h"
 #include "toolkit/io/weight_track.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/model/morphable_model.h"
 
 namespace mimetra {
@@ -20,8 +21,8 @@ class PendingOutputs;
 /// an eos model file with `expressions` its eos blendshape file), or the eos pair `sfm_shape_*.bin`
 /// (or another .bin that starts like one) and `expression_blendshapes_*.bin`. `path` may also be
 /// the shape model of such a pair. Shapes come in the natural order of their names. Throws IoError;
-/// MismatchError where shapes differ in topology. `threads`: 0 for all there are.
-MorphableModel read_model(const std::filesystem::path& path, int threads = 0);
+/// MismatchError if shapes differ in topology; Cancelled.
+MorphableModel read_model(const std::filesystem::path& path, const Context& context = {});
 
 /// The files that read_model reads of `path`, and the landmark mappings and rules in its folder,
 /// but not what else lies there. Throws IoError for a model.json that is none.
@@ -29,11 +30,11 @@ std::vector<std::filesystem::path> model_files(const std::filesystem::path& path
 
 /// The person that a spec names. Throws as read_model and read_fit; MismatchError for an unknown
 /// identity name, and for a fit of another model.
-BlendshapeModel read_person(const ModelSpec& spec, int threads = 0);
+BlendshapeModel read_person(const ModelSpec& spec, const Context& context = {});
 
 /// The person that `text` names: a model, or `MODEL@identity003=1.5`. Throws as
 /// ModelSpec::parse and read_person.
-BlendshapeModel read_blendshapes(const std::string& text);
+BlendshapeModel read_blendshapes(const std::string& text, const Context& context = {});
 
 /// True for a directory that looks like something read_model reads, and for an eos shape model;
 /// another file is not a model. A directory of `neutral.*` and other meshes without expressions or
@@ -50,10 +51,10 @@ std::vector<std::string> notes_on_unread(const std::filesystem::path& path);
 /// Writes a model directory: neutral.ply, expressions/NAME.ply, identities/NAME.ply (absolute
 /// shapes, double precision), and `performance.csv` when there is a track. `extra` are further
 /// files (name, content) that appear in the folder together with them. Atomic. Throws OutputError,
-/// also for a name that cannot be a file's.
+/// also for a name that cannot be a file's, and Cancelled.
 void write_model(const std::filesystem::path& folder, const MorphableModel& model,
                  const std::optional<WeightTrack>& performance, bool overwrite,
                  const std::vector<std::pair<std::string, std::string>>& extra = {},
-                 PendingOutputs* together = nullptr);
+                 PendingOutputs* together = nullptr, const Context& context = {});
 
 }  // namespace mimetra

@@ -64,12 +64,13 @@ class LoadedArray : public PointCache {
   NumericArray array_;
 };
 
-OpenSequence open_npy(const fs::path& path, const SequenceSource& source) {
-  return open_point_cache(open_npy_cache(path), source);
+OpenSequence open_npy(const fs::path& path, const SequenceSource& source, const Context& context) {
+  return open_point_cache(open_npy_cache(path), source, {}, context);
 }
 
 std::unique_ptr<FrameSink> begin_npy(const SequenceHeader& header, const fs::path& target,
-                                     const SequenceWriteOptions& options, const ExtraFiles& extra) {
+                                     const SequenceWriteOptions& options, const ExtraFiles& extra,
+                                     const Context&) {
   const auto begin = [&](const fs::path& path) {
     return begin_npy_cache(path, static_cast<std::size_t>(header.times.size()),
                            static_cast<std::size_t>(header.connectivity->vertices),

@@ -130,7 +130,7 @@ Positions rest_in(const std::string& name, const NumericArray& array, int vertic
   return Eigen::Map<const Positions>(array.values.data(), vertices, 3);
 }
 
-OpenSequence open_npz(const fs::path& path, const SequenceSource& source) {
+OpenSequence open_npz(const fs::path& path, const SequenceSource& source, const Context& context) {
   const NpzFile file(path);
   const std::string positions = file.find(kPositionNames);
   if (positions.empty()) {
@@ -153,7 +153,7 @@ OpenSequence open_npz(const fs::path& path, const SequenceSource& source) {
   if (const std::string rest = file.find(kRestNames); !rest.empty()) {
     parts.rest = rest_in(file.named(rest), file.array(rest), cache->vertices());
   }
-  return open_point_cache(std::move(cache), source, std::move(parts));
+  return open_point_cache(std::move(cache), source, std::move(parts), context);
 }
 
 template <typename Number>
@@ -258,7 +258,8 @@ class NpzSink : public FrameSink {
 };
 
 std::unique_ptr<FrameSink> begin_npz(const SequenceHeader& header, const fs::path& target,
-                                     const SequenceWriteOptions& options, const ExtraFiles& extra) {
+                                     const SequenceWriteOptions& options, const ExtraFiles& extra,
+                                     const Context&) {
   return std::make_unique<NpzSink>(header, target, options, extra);
 }
 

@@ -28,8 +28,10 @@ class ObjReader {
     content_.first_index = 1;
   }
 
-  MeshContent read() {
-    for (; !cursor_.at_end(); cursor_.next_line()) {
+  MeshContent read(const Context& context) {
+    const std::size_t size = cursor_.left();
+    for (std::size_t line = 0; !cursor_.at_end(); cursor_.next_line()) {
+      report_element(context, line++, cursor_.left(), size);
       const std::string_view keyword = cursor_.word();
       if (keyword == "v") {
         read_vertex();
@@ -145,17 +147,18 @@ bool ends_lines_in_cr(std::string_view text) {
 
 }  // namespace
 
-MeshContent read_obj(const std::string& path, std::string_view bytes) {
+MeshContent read_obj(const std::string& path, std::string_view bytes, const Context& context) {
   constexpr char kEndOfDosFile = '\x1a';
   bytes = without_padding(bytes);
   if (bytes.ends_with(kEndOfDosFile)) bytes.remove_suffix(1);
-  if (!ends_lines_in_cr(bytes)) return ObjReader(path, bytes).read();
+  if (!ends_lines_in_cr(bytes)) return ObjReader(path, bytes).read(context);
   std::string lines(bytes);
   std::ranges::replace(lines, '\r', '\n');
-  return ObjReader(path, lines).read();
+  return ObjReader(path, lines).read(context);
 }
 
-MeshFrame obj_frame(const Connectivity& connectivity, bool double_precision) {
+MeshFrame obj_frame(const Connectivity& connectivity, bool double_precision,
+                    const Context& context) {
   double_precision = double_precision || !fits_single_precision(connectivity.texture);
   std::string after;
   for (const Eigen::Vector2d& uv : connectivity.texture.coordinates) {
@@ -166,11 +169,13 @@ MeshFrame obj_frame(const Connectivity& connectivity, bool double_precision) {
     after += '\n';
   }
   auto group = connectivity.groups.begin();
-  for (int face = 0; face <= connectivity.polygons.size(); ++face) {
+  const int faces = connectivity.polygons.size();
+  for (int face = 0; face <= faces; ++face) {
+    report_element(context, face, faces - face, faces);
     for (; group != connectivity.groups.end() && group->first_face <= face; ++group) {
       after.append(group->statement).append("\n");
     }
-    if (face < connectivity.polygons.size()) append_face(after, connectivity, face);
+    if (face < faces) append_face(after, connectivity, face);
   }
   return {{}, std::move(after), [double_precision](const PositionsView& positions) {
             return position_lines("v ", positions, double_precision);

@@ -42,7 +42,7 @@ void read_face(TextCursor& cursor, MeshContent& content) {
 
 }  // namespace
 
-MeshContent read_off(const std::string& path, std::string_view bytes) {
+MeshContent read_off(const std::string& path, std::string_view bytes, const Context& context) {
   TextCursor cursor(path, without_padding(without_byte_order_mark(bytes)), {.comments = true});
   read_keyword(cursor);
   constexpr std::size_t kVertexBytes = 6;  // "0 0 0" and the line's end
@@ -54,12 +54,14 @@ MeshContent read_off(const std::string& path, std::string_view bytes) {
   MeshContent content;
   content.coordinates.reserve(3 * static_cast<std::size_t>(vertices));
   for (int vertex = 0; vertex < vertices; ++vertex) {
+    report_element(context, vertex, cursor.left(), bytes.size());
     content.coordinates.push_back(cursor.number(cursor.word_anywhere(), "a vertex coordinate"));
     content.coordinates.push_back(cursor.number(cursor.word(), "a vertex coordinate"));
     content.coordinates.push_back(cursor.number(cursor.word(), "a vertex coordinate"));
     cursor.next_line();
   }
   for (int face = 0; face < faces; ++face) {
+    report_element(context, face, cursor.left(), bytes.size());
     read_face(cursor, content);
     cursor.next_line();  // a colour may follow
   }
@@ -67,10 +69,12 @@ MeshContent read_off(const std::string& path, std::string_view bytes) {
   return content;
 }
 
-MeshFrame off_frame(const Connectivity& connectivity, bool double_precision) {
+MeshFrame off_frame(const Connectivity& connectivity, bool double_precision,
+                    const Context& context) {
   const Polygons& polygons = connectivity.polygons;
   std::string after;
   for (int face = 0; face < polygons.size(); ++face) {
+    report_element(context, face, polygons.size() - face, polygons.size());
     append_integer(after, polygons.offsets[face + 1] - polygons.offsets[face]);
     for (int corner = polygons.offsets[face]; corner < polygons.offsets[face + 1]; ++corner) {
       after += ' ';

@@ -75,9 +75,11 @@ class OmReader {
  public:
   OmReader(const std::string& path, std::string_view bytes) : bytes_(path, bytes) {}
 
-  OmParts read() {
+  OmParts read(const Context& context) {
+    const auto size = static_cast<double>(bytes_.left());
     read_header();
     while (!bytes_.at_end()) {
+      context.report(1 - static_cast<double>(bytes_.left()) / size);
       const OmChunk chunk = om_chunk(bytes_.number<std::uint16_t>("a chunk's header"));
       if (chunk.of == OmOf::end) break;
       read_chunk(chunk);
@@ -362,8 +364,8 @@ std::optional<std::pair<Eigen::MatrixXd, bool>> values_of(const OmProperty& prop
 
 }  // namespace
 
-MeshContent read_om(const std::string& path, std::string_view bytes) {
-  OmParts parts = OmReader(path, bytes).read();
+MeshContent read_om(const std::string& path, std::string_view bytes, const Context& context) {
+  OmParts parts = OmReader(path, bytes).read(context);
   MeshContent content;
   content.coordinates = std::move(parts.coordinates);
   if (parts.polygons.size() > 0) {
@@ -384,9 +386,10 @@ MeshContent read_om(const std::string& path, std::string_view bytes) {
   return content;
 }
 
-FieldsRead read_om_fields(const std::filesystem::path& path, const Connectivity& connectivity) {
+FieldsRead read_om_fields(const std::filesystem::path& path, const Connectivity& connectivity,
+                          const Context& context) {
   const std::string name = path.string(), bytes = read_file(path);
-  const OmParts parts = OmReader(name, bytes).read();
+  const OmParts parts = OmReader(name, bytes).read(context);
   const auto faces = static_cast<std::size_t>(connectivity.polygons.size());
   FieldsRead read;
   for (const OmProperty& property : parts.properties) {

@@ -23,8 +23,12 @@ constexpr unsigned kDouble = 1;     // of floats
 class HalfEdges {
  public:
   /// Throws MismatchError where a face meets what no half-edges hold.
-  HalfEdges(int vertices, const Polygons& polygons) : of_vertex_(vertices, -1) {
-    for (int face = 0; face < polygons.size(); ++face) add_face(polygons, face);
+  HalfEdges(int vertices, const Polygons& polygons, const Context& context)
+      : of_vertex_(vertices, -1) {
+    for (int face = 0; face < polygons.size(); ++face) {
+      report_element(context, face, polygons.size() - face, polygons.size());
+      add_face(polygons, face);
+    }
     close_holes();
     check_fans(vertices);
   }
@@ -191,8 +195,9 @@ void append_property(std::string& bytes, OmOf of, const std::string& name, const
 
 }  // namespace
 
-MeshFrame om_frame(const Connectivity& connectivity, bool double_precision) {
-  const HalfEdges edges(connectivity.vertices, connectivity.polygons);
+MeshFrame om_frame(const Connectivity& connectivity, bool double_precision,
+                   const Context& context) {
+  const HalfEdges edges(connectivity.vertices, connectivity.polygons, context);
   MeshFrame result;
   constexpr char kVersion = 2 << 5 | 2;
   result.before = {'O', 'M', 'P', kVersion};
@@ -215,9 +220,12 @@ MeshFrame om_frame(const Connectivity& connectivity, bool double_precision) {
   return result;
 }
 
-std::string om_properties(const std::vector<Field>& fields, const Connectivity& connectivity) {
+std::string om_properties(const std::vector<Field>& fields, const Connectivity& connectivity,
+                          const Context& context) {
   std::string bytes;
   for (const Field& field : fields) {
+    context.report(static_cast<double>(&field - fields.data()) /
+                   static_cast<double>(fields.size()));
     const bool on_vertices = field.location == Field::Location::vertices;
     const OmOf of = on_vertices ? OmOf::vertices : OmOf::faces;
     const Eigen::MatrixXd values =

@@ -45,8 +45,8 @@ class Pc2File : public StoredPointCache {
   }
 };
 
-OpenSequence open_pc2(const fs::path& path, const SequenceSource& source) {
-  return open_point_cache(std::make_unique<const Pc2File>(path), source);
+OpenSequence open_pc2(const fs::path& path, const SequenceSource& source, const Context& context) {
+  return open_point_cache(std::make_unique<const Pc2File>(path), source, {}, context);
 }
 
 /// Frames per second, on average.
@@ -72,7 +72,8 @@ PointCacheTarget begin_pc2_file(const SequenceHeader& header, const fs::path& pa
 }
 
 std::unique_ptr<FrameSink> begin_pc2(const SequenceHeader& header, const fs::path& target,
-                                     const SequenceWriteOptions& options, const ExtraFiles& extra) {
+                                     const SequenceWriteOptions& options, const ExtraFiles& extra,
+                                     const Context&) {
   return write_point_cache(header, target, options, extra,
                            [&](const fs::path& path) { return begin_pc2_file(header, path); });
 }

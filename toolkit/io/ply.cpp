@@ -18,11 +18,14 @@ namespace {
 /// The numbers after the header, whatever they are written in.
 class PlyBody {
  public:
-  PlyBody(const std::string& path, std::string_view bytes, const PlyHeader& header)
+  PlyBody(const std::string& path, std::string_view bytes, const PlyHeader& header,
+          const Context& context)
       : path_(path),
+        context_(context),
         format_(header.format),
         data_(bytes.substr(header.bytes)),
-        text_(path, without_padding(data_), {}, header.lines + 1) {}
+        text_(path, without_padding(data_), {}, header.lines + 1),
+        size_(left()) {}
 
   std::size_t left() const { return format_ == PlyFormat::ascii ? text_.left() : data_.size(); }
 
@@ -44,6 +47,7 @@ class PlyBody {
   void set_element(std::string_view kind, std::size_t index) {
     kind_ = kind;
     index_ = index;
+    report_element(context_, index, left(), size_);
   }
 
   void expect_end() {
@@ -89,9 +93,11 @@ class PlyBody {
   }
 
   const std::string& path_;
+  const Context& context_;
   PlyFormat format_;
   std::string_view data_;
   TextCursor text_;
+  std::size_t size_;
   std::string_view kind_;
   std::size_t index_ = 0;
 };
@@ -275,9 +281,9 @@ void read_faces(PlyBody& body, const PlyElement& element, MeshContent& content) 
 
 }  // namespace
 
-MeshContent read_ply(const std::string& path, std::string_view bytes) {
+MeshContent read_ply(const std::string& path, std::string_view bytes, const Context& context) {
   const PlyHeader header = read_ply_header(path, bytes);
-  PlyBody body(path, bytes, header);
+  PlyBody body(path, bytes, header, context);
   MeshContent content;
   bool has_vertices = false, has_faces = false;
   for (const PlyElement& element : header.elements) {

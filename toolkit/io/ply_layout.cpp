@@ -81,7 +81,7 @@ class PlyLayout : public MeshLayout {
 
 }  // namespace
 
-std::unique_ptr<const MeshLayout> ply_layout(std::string first, std::size_t) {
+std::unique_ptr<const MeshLayout> ply_layout(std::string first, std::size_t, const Context&) {
   const PlyHeader header = read_ply_header("", first);
   const std::optional<VertexBlock> block = block_of(header);
   if (!block) return nullptr;

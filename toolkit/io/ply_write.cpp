@@ -70,11 +70,12 @@ void append_texture(std::string& bytes, const TextureCoordinates& texture, int f
 }
 
 template <typename Count, typename Scalar>
-std::string face_bytes(const Connectivity& connectivity) {
+std::string face_bytes(const Connectivity& connectivity, const Context& context) {
   const Polygons& polygons = connectivity.polygons;
   const bool textured = is_textured_by_corner(connectivity);
   std::string bytes;
   for (int face = 0; face < polygons.size(); ++face) {
+    report_element(context, face, polygons.size() - face, polygons.size());
     const int first = polygons.offsets[face], last = polygons.offsets[face + 1];
     append_little_endian(bytes, static_cast<Count>(last - first));
     for (int corner = first; corner < last; ++corner) {
@@ -86,11 +87,12 @@ std::string face_bytes(const Connectivity& connectivity) {
 }
 
 template <typename Scalar>
-MeshFrame frame(const Connectivity& connectivity, std::string before) {
+MeshFrame frame(const Connectivity& connectivity, std::string before, const Context& context) {
   MeshFrame result;
   result.before = std::move(before);
-  result.after = bytes_suffice(connectivity) ? face_bytes<std::uint8_t, Scalar>(connectivity)
-                                             : face_bytes<std::uint32_t, Scalar>(connectivity);
+  result.after = bytes_suffice(connectivity)
+                     ? face_bytes<std::uint8_t, Scalar>(connectivity, context)
+                     : face_bytes<std::uint32_t, Scalar>(connectivity, context);
   result.positions = position_bytes<Scalar>;
   if (is_textured_by_vertex(connectivity)) {
     result.positions = [texture = connectivity.texture.coordinates](const PositionsView& poses) {
@@ -102,11 +104,12 @@ MeshFrame frame(const Connectivity& connectivity, std::string before) {
 
 }  // namespace
 
-MeshFrame ply_frame(const Connectivity& connectivity, bool double_precision) {
+MeshFrame ply_frame(const Connectivity& connectivity, bool double_precision,
+                    const Context& context) {
   double_precision = double_precision || !fits_single_precision(connectivity.texture);
   std::string before = header(connectivity, double_precision);
-  return double_precision ? frame<double>(connectivity, std::move(before))
-                          : frame<float>(connectivity, std::move(before));
+  return double_precision ? frame<double>(connectivity, std::move(before), context)
+                          : frame<float>(connectivity, std::move(before), context);
 }
 
 }  // namespace mimetra

@@ -97,11 +97,11 @@ std::string note_on_numbering(const fs::path& path, const FirstPose& first,
 /// Faces, and where it is not known the rest pose, of files that stand beside a cache, and what is
 /// odd about them in its first pose.
 void add_parts_beside(const PointCache& cache, const FirstPose& first, const SequenceSource& source,
-                      PointCacheParts& parts, OpenSequence& open) {
+                      PointCacheParts& parts, OpenSequence& open, const Context& context) {
   std::vector<fs::path>& files = open.files;
   const fs::path path = files.front();
   files.push_back(topology_of(name_with(path, kTopologySuffix), source));
-  const MeshFileReader reader(files.back());
+  const MeshFileReader reader(files.back(), context);
   if (cache.vertices() != reader.mesh().connectivity.vertices) {
     throw MismatchError(path.string() + ": " + std::to_string(cache.vertices()) +
                         " vertices, expected " + std::to_string(reader.mesh().positions.rows()) +
@@ -258,14 +258,14 @@ void StoredPointCache::read_some_values(int first, VertexIndex vertex, FramesVie
 }
 
 OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache, const SequenceSource& source,
-                              PointCacheParts parts) {
+                              PointCacheParts parts, const Context& context) {
   OpenSequence open;
   open.files = {parts.path.empty() ? cache->path() : parts.path};
   const std::vector<int> chosen = selected_frames(source.frames, cache->frames());
   // Frames that nobody asks for are not read.
   FirstPose first{chosen.front(), {}};
   if (!parts.faces || !parts.rest) first.positions = pose_of(*cache, first.frame);
-  if (!parts.faces) add_parts_beside(*cache, first, source, parts, open);
+  if (!parts.faces) add_parts_beside(*cache, first, source, parts, open, context);
   SequenceHeader header;
   header.connectivity = std::move(parts.faces);
   FrameTimes times = times_of(*cache, source, std::move(parts.times), open.files);

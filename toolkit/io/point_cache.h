@@ -12,6 +12,7 @@
 
 #include "toolkit/io/binary_file.h"
 #include "toolkit/io/sequence_options.h"
+#include "toolkit/mesh/context.h"
 
 /// Files with positions over time and without faces. Internal to the formats that are such files.
 namespace mimetra {
@@ -98,9 +99,9 @@ struct PointCacheParts {
 
 /// The frames that `source` takes of a cache. Where its file holds no faces they are those of
 /// `source.topology` or NAME.topology.ply beside it, and the rest pose is NAME.rest.ply. Throws
-/// IoError, MismatchError.
+/// IoError, MismatchError, Cancelled.
 OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache, const SequenceSource& source,
-                              PointCacheParts parts = {});
+                              PointCacheParts parts = {}, const Context& context = {});
 
 /// Where a cache's frames go.
 struct PointCacheTarget {

@@ -390,8 +390,9 @@ bool is_scene_file(const fs::path& path) {
   return false;
 }
 
-Scene read_scene(const fs::path& path) {
-  return lower_extension(path).starts_with(".usd") ? read_usd(path) : read_gltf(path);
+Scene read_scene(const fs::path& path, const Context& context) {
+  return lower_extension(path).starts_with(".usd") ? read_usd(path, context)
+                                                   : read_gltf(path, context);
 }
 
 }  // namespace mimetra

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "toolkit/io/weight_curve.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/model/blendshape_model.h"
 
 /// Files of a whole scene, such as glTF and USD: meshes with morph targets and their weights over
@@ -70,11 +71,11 @@ Scene joined_scene(const std::string& path, std::vector<ScenePart> parts, std::s
 /// True for the extension of a scene's file, also one that is only refused by what it is.
 bool is_scene_file(const std::filesystem::path& path);
 
-/// Reads a scene. Throws IoError.
-Scene read_scene(const std::filesystem::path& path);
+/// Reads a scene. Throws IoError, Cancelled.
+Scene read_scene(const std::filesystem::path& path, const Context& context = {});
 
 /// Readers of formats, each in the file of its name.
-Scene read_gltf(const std::filesystem::path& path);
-Scene read_usd(const std::filesystem::path& path);
+Scene read_gltf(const std::filesystem::path& path, const Context& context = {});
+Scene read_usd(const std::filesystem::path& path, const Context& context = {});
 
 }  // namespace mimetra

@@ -11,7 +11,6 @@
 #include "toolkit/io/scene.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/animation.h"
 #include "toolkit/model/expression_notes.h"
@@ -26,8 +25,9 @@ bool is_there(const fs::path& path) {
   return fs::exists(path, unreadable);
 }
 
-OpenSequence open_driven(const ModelSpec& spec, const SequenceSource& source) {
-  auto person = std::make_shared<const BlendshapeModel>(read_person(spec, source.threads));
+OpenSequence open_driven(const ModelSpec& spec, const SequenceSource& source,
+                         const Context& context) {
+  auto person = std::make_shared<const BlendshapeModel>(read_person(spec, context));
   OpenSequence open;
   if (!spec.fit) {
     open = drive(std::move(person), spec.path, source);
@@ -58,9 +58,11 @@ void check_undriven(const std::string& text, const SequenceSource& source) {
                       " could drive; expected a folder with a neutral and expressions");
 }
 
-OpenSequence open_path(const fs::path& path, const SequenceSource& source) {
-  if (fs::is_directory(path)) return open_frames(frames_of_folder(path), path, source);
-  if (const SequenceFormat* format = sequence_format(path)) return format->open(path, source);
+OpenSequence open_path(const fs::path& path, const SequenceSource& source, const Context& context) {
+  if (fs::is_directory(path)) return open_frames(frames_of_folder(path), path, source, context);
+  if (const SequenceFormat* format = sequence_format(path)) {
+    return format->open(path, source, context);
+  }
   const std::string found = foreign_file(path);
   throw IoError(path.string(), found.empty() ? "is no sequence; expected a folder, " +
                                                    joined(sequence_extensions()) + " or a model"
@@ -75,28 +77,30 @@ void check_digits(const std::string& text) {
                           pattern + "'");
 }
 
-OpenSequence opened(const std::string& text, const SequenceSource& source) {
+OpenSequence opened(const std::string& text, const SequenceSource& source, const Context& context) {
   const bool exists = is_there(text);
-  if (exists && is_scene_file(text)) return open_scene(text, source);
-  if (exists && is_model(text)) return open_driven(ModelSpec{text, {}, {}}, source);
+  if (exists && is_scene_file(text)) return open_scene(text, source, context);
+  if (exists && is_model(text)) return open_driven(ModelSpec{text, {}, {}}, source, context);
   if (!exists && !is_frame_pattern(text)) check_digits(text);
   if (!exists && !is_frame_pattern(text) && text.find('@') != std::string::npos) {
     const ModelSpec spec = ModelSpec::parse(text);
     if (is_there(spec.path) && !is_model(spec.path)) {
       throw IoError(spec.path.string(), "is no model, so that nothing can follow '@'");
     }
-    return open_driven(spec, source);
+    return open_driven(spec, source, context);
   }
   if (!exists && !is_frame_pattern(text)) fail_missing(text);
   check_undriven(text, source);
-  return exists ? open_path(text, source) : open_frames(frames_of_pattern(text), {}, source);
+  return exists ? open_path(text, source, context)
+                : open_frames(frames_of_pattern(text), {}, source, context);
 }
 
 }  // namespace
 
-OpenSequence open_sequence(const std::string& text, const SequenceSource& source) {
+OpenSequence open_sequence(const std::string& text, const SequenceSource& source,
+                           const Context& context) {
   check_options(source);
-  OpenSequence open = opened(text, source);
+  OpenSequence open = opened(text, source, context);
   if (const auto* animation = dynamic_cast<const Animation*>(open.frames.get())) {
     const BlendshapeModel& model = animation->model();
     for (const std::string& note :
@@ -112,12 +116,12 @@ OpenSequence open_sequence(const std::string& text, const SequenceSource& source
   return open;
 }
 
-SequenceRead read_sequence(const std::string& text, const SequenceSource& source) {
-  OpenSequence open = open_sequence(text, source);
-  SequenceRead read{
-      MeshSequence(*open.frames, {.threads = source.threads, .progress = source.progress}),
-      open.model_driven, std::move(open.files), std::move(open.notes)};
-  report_progress(source.progress, 1);
+SequenceRead read_sequence(const std::string& text, const SequenceSource& source,
+                           const Context& context) {
+  OpenSequence open = open_sequence(text, source, context.part(0, 0));
+  SequenceRead read{MeshSequence(*open.frames, context), open.model_driven, std::move(open.files),
+                    std::move(open.notes)};
+  context.report(1);
   return read;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "toolkit/io/sequence_options.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/mesh_sequence.h"
 
 namespace mimetra {
@@ -27,12 +28,14 @@ struct SequenceRead {
 ///
 /// No frame is read but the first, for faces and where it stands in for the rest pose. Throws
 /// IoError, MismatchError, std::invalid_argument for a bad frame range and for options out of
-/// range; reading frames throws IoError, and MismatchError for frames that differ in vertices or
-/// faces, naming both files.
-OpenSequence open_sequence(const std::string& text, const SequenceSource& source = {});
+/// range, Cancelled; reading frames throws IoError, and MismatchError for frames that differ in
+/// vertices or faces, naming both files.
+OpenSequence open_sequence(const std::string& text, const SequenceSource& source = {},
+                           const Context& context = {});
 
-/// The same, with all frames in memory. Throws what opening and reading throw, Cancelled.
-SequenceRead read_sequence(const std::string& text, const SequenceSource& source = {});
+/// The same, with all frames in memory. Throws what opening and reading throw.
+SequenceRead read_sequence(const std::string& text, const SequenceSource& source = {},
+                           const Context& context = {});
 
 /// Begins `target`: a file in the format of its extension (sequence_formats(); a mesh file takes
 /// one frame), with NAME.topology.ply and, where the rest pose is known, NAME.rest.ply beside it
@@ -40,17 +43,19 @@ SequenceRead read_sequence(const std::string& text, const SequenceSource& source
 /// on where four digits do not suffice) with NAME.rest.ply beside it where the rest pose is known
 /// (never for STL, which numbers the vertices anew). Atomic. Throws OutputError, MismatchError for
 /// what the format cannot hold, std::invalid_argument for options out of range and for an extension
-/// that no format has: a folder's name ends in '/' or has no dot.
+/// that no format has (a folder's name ends in '/' or has no dot), Cancelled.
 std::unique_ptr<FrameSink> begin_sequence(const SequenceHeader& header,
                                           const std::filesystem::path& target,
                                           const SequenceWriteOptions& = {},
-                                          const ExtraFiles& extra = {});
+                                          const ExtraFiles& extra = {},
+                                          const Context& context = {});
 
 /// Begins `target`, writes all frames and returns the files written. Throws what reading throws,
-/// too, and Cancelled.
+/// too.
 std::vector<std::filesystem::path> write_sequence(const FrameSource& sequence,
                                                   const std::filesystem::path& target,
                                                   const SequenceWriteOptions& = {},
-                                                  const ExtraFiles& extra = {});
+                                                  const ExtraFiles& extra = {},
+                                                  const Context& context = {});
 
 }  // namespace mimetra

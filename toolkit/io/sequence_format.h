@@ -8,6 +8,7 @@
 #include "toolkit/io/fields_read.h"
 #include "toolkit/io/held_parts.h"
 #include "toolkit/io/sequence_options.h"
+#include "toolkit/mesh/context.h"
 
 namespace mimetra {
 
@@ -25,18 +26,20 @@ struct SequenceFormat {
   /// What positions are written in, and what they may be written in by option.
   enum class Precision { single, single_or_double, double_or_single };
   Precision precision;
-  OpenSequence (*open)(const std::filesystem::path&, const SequenceSource&);
+  OpenSequence (*open)(const std::filesystem::path&, const SequenceSource&, const Context&);
   std::unique_ptr<FrameSink> (*begin)(const SequenceHeader&, const std::filesystem::path& target,
-                                      const SequenceWriteOptions&, const ExtraFiles&);
+                                      const SequenceWriteOptions&, const ExtraFiles&,
+                                      const Context&);
   /// What its files and those beside them have a place for: what they have none for is said.
   HeldParts holds = {};
   /// Writes a model and its weights as such; null where only poses are written.
   std::vector<std::filesystem::path> (*write_animation)(const Animation&,
                                                         const std::filesystem::path& target,
                                                         const SequenceWriteOptions&,
-                                                        const ExtraFiles&) = nullptr;
+                                                        const ExtraFiles&,
+                                                        const Context&) = nullptr;
   /// The fields on its mesh; null for a format that has no place for any.
-  FieldsRead (*fields)(const std::filesystem::path&, const Connectivity&) = nullptr;
+  FieldsRead (*fields)(const std::filesystem::path&, const Connectivity&, const Context&) = nullptr;
 };
 
 /// All formats, in the order in which lists have them.

@@ -11,7 +11,6 @@
 #include "toolkit/mesh/fields.h"
 #include "toolkit/mesh/frame_source.h"
 #include "toolkit/mesh/option.h"
-#include "toolkit/mesh/progress.h"
 
 /// What opening a sequence is given and gives, and what writing one is given.
 namespace mimetra {
@@ -28,9 +27,6 @@ struct SequenceSource {
   std::optional<std::string> frames = {};
   /// Frames per second where the files say nothing of time.
   std::optional<double> fps = {};
-  /// 0 for all there are; what is read does not depend on it.
-  int threads = 0;
-  Progress progress = {};
 
   static constexpr Option kWeights{"weights", &SequenceSource::weights};
   static constexpr Option kTopology{"topology", &SequenceSource::topology};
@@ -74,17 +70,15 @@ struct SequenceWriteOptions {
   std::vector<std::filesystem::path> inputs = {};
   /// Outputs that it appears together with; alone without.
   PendingOutputs* together = nullptr;
-  /// 0 for all there are; what is written does not depend on it.
-  int threads = 0;
-  Progress progress = {};
 
   static constexpr Option kFormat{"format", &SequenceWriteOptions::format};
   static constexpr Option kDoublePrecision{"double_precision",
                                            &SequenceWriteOptions::double_precision};
   static constexpr Option kSinglePrecision{"single_precision",
                                            &SequenceWriteOptions::single_precision};
+  static constexpr Option kOverwrite{"overwrite", &SequenceWriteOptions::overwrite};
   static constexpr auto declared() {
-    return std::tuple(kFormat, kDoublePrecision, kSinglePrecision);
+    return std::tuple(kFormat, kDoublePrecision, kSinglePrecision, kOverwrite);
   }
 };
 

@@ -4,7 +4,6 @@
 #include "toolkit/io/sequence_file.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/animation.h"
 
@@ -13,12 +12,12 @@ namespace fs = std::filesystem;
 
 std::unique_ptr<FrameSink> begin_sequence(const SequenceHeader& header, const fs::path& target,
                                           const SequenceWriteOptions& options,
-                                          const ExtraFiles& extra) {
+                                          const ExtraFiles& extra, const Context& context) {
   check_options(options);
   if (header.times.size() == 0) throw std::invalid_argument("the sequence has no frames");
-  if (target.extension().empty()) return begin_folder(header, target, options, extra);
+  if (target.extension().empty()) return begin_folder(header, target, options, extra, context);
   if (const SequenceFormat* format = sequence_format(target)) {
-    return format->begin(header, target, options, extra);
+    return format->begin(header, target, options, extra, context);
   }
   throw std::invalid_argument(target.string() + ": no sequence can be written as '" +
                               target.extension().string() + "', expected " +
@@ -27,19 +26,21 @@ std::unique_ptr<FrameSink> begin_sequence(const SequenceHeader& header, const fs
 }
 
 std::vector<fs::path> write_sequence(const FrameSource& sequence, const fs::path& target,
-                                     const SequenceWriteOptions& options, const ExtraFiles& extra) {
+                                     const SequenceWriteOptions& options, const ExtraFiles& extra,
+                                     const Context& context) {
   if (const auto* animation = dynamic_cast<const Animation*>(&sequence)) {
     const SequenceFormat* format = sequence_format(target);
     if (format && format->write_animation && animation->model().expressions().size() > 0) {
       check_options(options);
-      return format->write_animation(*animation, target, options, extra);
+      return format->write_animation(*animation, target, options, extra, context);
     }
   }
-  const auto sink = begin_sequence(sequence.header(), target, options, extra);
-  report_progress(options.progress, 0);
-  for_each_block(sequence, {.threads = options.threads, .progress = options.progress},
-                 [&sink](int first, const Frames& poses) { sink->write(first, poses); });
-  report_progress(options.progress, 1);
+  const auto sink = begin_sequence(sequence.header(), target, options, extra, context.part(0, 0));
+  context.report(0);
+  for_each_block(
+      sequence, [&sink](int first, const Frames& poses) { sink->write(first, poses); },
+      context.without_ranks());
+  context.report(1);
   return sink->commit();
 }
 

@@ -178,7 +178,8 @@ Positions rest_in(const Hdf5Dataset& set, int vertices) {
   return rest;
 }
 
-OpenSequence open_splocs(const fs::path& path, const SequenceSource& source) {
+OpenSequence open_splocs(const fs::path& path, const SequenceSource& source,
+                         const Context& context) {
   const Hdf5File file(path);
   auto cache = std::make_unique<const SplocsFile>(path, positions_of(file));
   PointCacheParts parts;
@@ -188,7 +189,7 @@ OpenSequence open_splocs(const fs::path& path, const SequenceSource& source) {
     check_times(path.string(), *parts.times);
   }
   if (file.has(kRest)) parts.rest = rest_in(file.dataset(kRest), cache->vertices());
-  return open_point_cache(std::move(cache), source, std::move(parts));
+  return open_point_cache(std::move(cache), source, std::move(parts), context);
 }
 
 Hdf5Image image_of(const SequenceHeader& header, Hdf5Array::Type type) {
@@ -270,7 +271,7 @@ class SplocsSink : public FrameSink {
 
 std::unique_ptr<FrameSink> begin_splocs(const SequenceHeader& header, const fs::path& target,
                                         const SequenceWriteOptions& options,
-                                        const ExtraFiles& extra) {
+                                        const ExtraFiles& extra, const Context&) {
   return std::make_unique<SplocsSink>(header, target, options, extra);
 }
 

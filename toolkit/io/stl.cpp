@@ -23,7 +23,8 @@ bool is_binary(std::string_view bytes) {
          bytes.size() == kPreambleBytes + kTriangleBytes * triangle_count(bytes);
 }
 
-std::vector<double> read_binary(const std::string& path, std::string_view bytes) {
+std::vector<double> read_binary(const std::string& path, std::string_view bytes,
+                                const Context& context) {
   if (bytes.size() < kPreambleBytes) {
     throw IoError(path, "is no STL file: " + std::to_string(bytes.size()) +
                             " bytes, expected at least " + std::to_string(kPreambleBytes));
@@ -39,6 +40,7 @@ std::vector<double> read_binary(const std::string& path, std::string_view bytes)
   std::vector<double> corners;
   corners.reserve(9 * triangles);
   for (std::size_t triangle = 0; triangle < triangles; ++triangle) {
+    report_element(context, triangle, triangles - triangle, triangles);
     const char* at = bytes.data() + kPreambleBytes + kTriangleBytes * triangle;
     for (std::size_t i = 3; i < 12; ++i) {  // the first three numbers are the normal
       corners.push_back(number_at<float>(at + i * sizeof(float), std::endian::little));
@@ -69,7 +71,8 @@ void read_facet(TextCursor& cursor, std::vector<double>& corners) {
   expect(cursor, "endfacet");
 }
 
-std::vector<double> read_ascii(const std::string& path, std::string_view bytes) {
+std::vector<double> read_ascii(const std::string& path, std::string_view bytes,
+                               const Context& context) {
   TextCursor cursor(path, bytes, {});
   std::vector<double> corners;
   std::string_view keyword = cursor.word_anywhere();
@@ -77,7 +80,10 @@ std::vector<double> read_ascii(const std::string& path, std::string_view bytes) 
   while (keyword == "solid") {
     cursor.next_line();  // its name
     keyword = cursor.word_anywhere();
-    for (; keyword == "facet"; keyword = cursor.word_anywhere()) read_facet(cursor, corners);
+    for (; keyword == "facet"; keyword = cursor.word_anywhere()) {
+      report_element(context, corners.size() / 9, cursor.left(), bytes.size());
+      read_facet(cursor, corners);
+    }
     if (keyword != "endsolid") cursor.fail_expected("'facet' or 'endsolid'", keyword);
     cursor.next_line();
     keyword = cursor.word_anywhere();
@@ -110,12 +116,13 @@ std::string triangle_bytes(const PositionsView& positions, const Triangles& tria
 
 }  // namespace
 
-std::vector<double> read_stl_corners(const std::string& path, std::string_view bytes) {
-  return is_binary(bytes) ? read_binary(path, bytes)
-                          : read_ascii(path, without_byte_order_mark(bytes));
+std::vector<double> read_stl_corners(const std::string& path, std::string_view bytes,
+                                     const Context& context) {
+  return is_binary(bytes) ? read_binary(path, bytes, context)
+                          : read_ascii(path, without_byte_order_mark(bytes), context);
 }
 
-MeshFrame stl_frame(const Connectivity& connectivity, bool) {
+MeshFrame stl_frame(const Connectivity& connectivity, bool, const Context&) {
   std::string before(kHeaderBytes, ' ');
   append_little_endian(before, static_cast<std::uint32_t>(connectivity.triangles.rows()));
   return {

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "toolkit/io/mesh_codecs.h"
 #include "toolkit/io/mesh_layout.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/mesh/coordinate.h"
@@ -72,12 +73,13 @@ Line kind_of(const char* at, const char* end) {
 /// Lines of f and vt, in runs; between them stand vertices, and what faces do not depend on.
 class ObjLayout : public MeshLayout {
  public:
-  explicit ObjLayout(std::string first) : first_(std::move(first)) {
+  ObjLayout(std::string first, const Context& context) : first_(std::move(first)) {
     const std::string_view text = without_byte_order_mark(first_);
     const char *at = text.data(), *end = at + text.size();
     std::size_t vertices = 0;
     bool in_run = false;
-    while (at != end) {
+    for (std::size_t line = 0; at != end; ++line) {
+      report_element(context, line, static_cast<std::size_t>(end - at), text.size());
       const Line kind = kind_of(at, end);
       const char* next = next_line(at, end);
       if (kind == Line::vertex) ++vertices;
@@ -177,12 +179,14 @@ class OffLayout : public MeshLayout {
 
 }  // namespace
 
-std::unique_ptr<const MeshLayout> obj_layout(std::string first, std::size_t) {
+std::unique_ptr<const MeshLayout> obj_layout(std::string first, std::size_t,
+                                             const Context& context) {
   if (may_continue(first)) return nullptr;
-  return std::make_unique<ObjLayout>(std::move(first));
+  return std::make_unique<ObjLayout>(std::move(first), context);
 }
 
-std::unique_ptr<const MeshLayout> off_layout(std::string first, std::size_t vertices) {
+std::unique_ptr<const MeshLayout> off_layout(std::string first, std::size_t vertices,
+                                             const Context&) {
   // The keyword and the three counts, which comments may interrupt, and the end of their line.
   const std::string unnamed;
   TextCursor cursor(unnamed, without_byte_order_mark(first), {.comments = true});

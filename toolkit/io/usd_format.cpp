@@ -210,7 +210,8 @@ class UsdFrames : public FrameSink {
 };
 
 std::unique_ptr<FrameSink> begin_usd(const SequenceHeader& header, const fs::path& target,
-                                     const SequenceWriteOptions& options, const ExtraFiles& extra) {
+                                     const SequenceWriteOptions& options, const ExtraFiles& extra,
+                                     const Context&) {
   return std::make_unique<UsdFrames>(header, target, options, extra);
 }
 
@@ -235,7 +236,8 @@ std::string usd_shape(const std::string& name, const double* displacements, Eige
 
 /// Blendshapes and their weights over time. [UsdSkel]
 std::vector<fs::path> write_usd(const Animation& animation, const fs::path& target,
-                                const SequenceWriteOptions& options, const ExtraFiles& extra) {
+                                const SequenceWriteOptions& options, const ExtraFiles& extra,
+                                const Context& context) {
   const SequenceHeader& header = animation.header();
   const ShapeBasis& shapes = animation.model().expressions();
   const Positions& neutral = header.rest;
@@ -255,6 +257,7 @@ std::vector<fs::path> write_usd(const Animation& animation, const fs::path& targ
              "\n    rel skel:blendShapeTargets = " + targets +
              "]\n    rel skel:skeleton = </face/skeleton>\n");
   for (int j = 0; j < shapes.size(); ++j) {
+    context.report(static_cast<double>(j) / shapes.size());
     file.write(usd_shape(frame_name(j, shapes.size(), "").replace(0, 5, "shape"),
                          shapes.displacements.col(j).data(), neutral.rows()));
   }

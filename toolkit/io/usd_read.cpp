@@ -53,9 +53,12 @@ class UsdReader {
     note_unit();
   }
 
-  Scene read() {
+  Scene read(const Context& context) {
     for (const UsdPrim& prim : layer_.prims) visit(prim, {});
-    for (UsdMesh& mesh : meshes_) fill(mesh);
+    for (std::size_t i = 0; i < meshes_.size(); ++i) {
+      context.report(static_cast<double>(i) / static_cast<double>(2 * meshes_.size()));
+      fill(meshes_[i]);
+    }
     const bool is_baked =
         std::ranges::any_of(meshes_, [](const UsdMesh& mesh) { return !mesh.codes.empty(); });
     std::vector<ScenePart> parts;
@@ -65,7 +68,7 @@ class UsdReader {
       if (is_baked) parts.back().weights = nullptr;
     }
     Scene scene = joined_scene(path_, std::move(parts), bytes_);
-    if (is_baked) bake(scene);
+    if (is_baked) bake(scene, context.part(0.5, 1));
     scene.z_is_up = z_is_up_;
     scene.files = {path_};
     scene.notes.insert(scene.notes.begin(), notes_.begin(), notes_.end());
@@ -319,7 +322,7 @@ class UsdReader {
   }
 
   /// Frames of points and transforms that are told over time, with the weights on top.
-  void bake(Scene& scene) const {
+  void bake(Scene& scene, const Context& context) const {
     std::map<double, double> codes;  // by their seconds, of which two codes may have the same
     const auto add = [&](double code) { codes.emplace(code / rate_, code); };
     bool rest_is_known = true;
@@ -334,6 +337,7 @@ class UsdReader {
     Eigen::VectorXd times(frames);
     Eigen::Index frame = 0;
     for (const auto& [seconds, code] : codes) {
+      context.report(static_cast<double>(frame) / static_cast<double>(frames));
       Eigen::Index at = 0;
       for (const UsdMesh& mesh : meshes_) {
         const Positions points = pose_at(mesh, code);
@@ -383,14 +387,14 @@ class UsdReader {
 
 }  // namespace
 
-Scene read_usd(const fs::path& path) {
+Scene read_usd(const fs::path& path, const Context& context) {
   const std::string text = read_file(path);
   const std::string remedy = ", which is not read; export .usda, the text form (usdcat " +
                              path.filename().string() + " -o NAME.usda)";
   if (text.starts_with("PXR-USDC")) throw IoError(path.string(), "is binary USD" + remedy);
   if (text.starts_with("PK")) throw IoError(path.string(), "is a package of USD" + remedy);
   check_encoding(path.string(), text);
-  return UsdReader(path, without_byte_order_mark(text)).read();
+  return UsdReader(path, without_byte_order_mark(text)).read(context);
 }
 
 }  // namespace mimetra

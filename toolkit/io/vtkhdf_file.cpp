@@ -8,7 +8,6 @@
 #include "toolkit/io/point_cache.h"
 #include "toolkit/io/sequence_parts.h"
 #include "toolkit/io/single_precision.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/whole_numbers.h"
 
 namespace mimetra {
@@ -158,7 +157,7 @@ Layout layout_of(const FieldSequence& sequence, const SequenceWriteOptions& opti
 }
 
 void write_steps(const FieldSequence& sequence, const Layout& layout, const OutputFile& file,
-                 const fs::path& target, const SequenceWriteOptions& options) {
+                 const fs::path& target, const Context& context) {
   const FrameSource& frames = *sequence.frames;
   const auto vertices = static_cast<std::size_t>(frames.vertices());
   const StepValues points = layout.values_of(kPoints, 3 * vertices);
@@ -172,33 +171,32 @@ void write_steps(const FieldSequence& sequence, const Layout& layout, const Outp
     layout.values_of(kTop + "/PointData/" + kDisplacementLength, vertices)
         .write(file, first, lengths);
   };
-  for_each_block(frames, {.threads = options.threads, .progress = options.progress},
-                 [&](int first, const Frames& poses) {
-                   if (layout.number_bytes == sizeof(float)) {
-                     check_single_range(target, first, poses);
-                   }
-                   points.write(file, first, poses);
-                   if (sequence.displacement) write_displacements(first, poses);
-                 });
+  const auto write = [&](int first, const Frames& poses) {
+    if (layout.number_bytes == sizeof(float)) check_single_range(target, first, poses);
+    points.write(file, first, poses);
+    if (sequence.displacement) write_displacements(first, poses);
+  };
+  for_each_block(frames, write, context.without_ranks());
 }
 
 }  // namespace
 
 std::vector<fs::path> write_vtkhdf(const FieldSequence& sequence, const fs::path& target,
-                                   const SequenceWriteOptions& options, const ExtraFiles& extra) {
+                                   const SequenceWriteOptions& options, const ExtraFiles& extra,
+                                   const Context& context) {
   check_options(options);
   check_names(sequence);
   if (sequence.frames->frames() == 0) throw std::invalid_argument("the sequence has no frames");
   PendingOutputs outputs(options.overwrite, options.inputs, options.together);
   OutputFile file(outputs.add(target, PendingOutput::Kind::file));
   Layout layout = layout_of(sequence, options);
-  report_progress(options.progress, 0);
+  context.report(0);
   file.write({layout.image.image()});
-  write_steps(sequence, layout, file, target, options);
+  write_steps(sequence, layout, file, target, context);
   file.close();
   std::vector<fs::path> files = {target};
   add_extra_beside(outputs, target, extra, files);
-  report_progress(options.progress, 1);
+  context.report(1);
   outputs.commit();
   return files;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "toolkit/io/sequence_options.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/fields.h"
 
 namespace mimetra {
@@ -18,6 +19,7 @@ namespace mimetra {
 std::vector<std::filesystem::path> write_vtkhdf(const FieldSequence& sequence,
                                                 const std::filesystem::path& target,
                                                 const SequenceWriteOptions& = {},
-                                                const ExtraFiles& extra = {});
+                                                const ExtraFiles& extra = {},
+                                                const Context& context = {});
 
 }  // namespace mimetra

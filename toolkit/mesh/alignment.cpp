@@ -13,9 +13,9 @@
 #include <Eigen/SVD>
 
 #include "toolkit/mesh/alignment.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/product_blocking.h"
-#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 namespace {
@@ -100,14 +100,16 @@ std::vector<RigidTransform> transforms_of(const FrameRows& numbers) {
 }
 
 std::vector<RigidTransform> fit_frames(const FrameSource& source, const Eigen::VectorXd& weights,
-                                       const BlockOptions& options) {
+                                       const Context& context) {
   const RigidFitter fitter(source.rest(), weights);
   const FrameNumbers motion = over_frames(
-      source, 0, kTransformNumbers, options, [&](int, const FrameBlock& block, FrameRows& numbers) {
+      source, 0, kTransformNumbers,
+      [&](int, const FrameBlock& block, FrameRows& numbers) {
         for (int row = 0; row < block.frames(); ++row) {
           numbers.row(row) = numbers_of(motion_to(block.frame(row), source.rest(), fitter));
         }
-      });
+      },
+      context);
   return transforms_of(motion.of_each);
 }
 
@@ -144,12 +146,11 @@ struct StableFit {
 };
 
 /// One fit with these weights.
-StableFit weighted_fit(const FrameSource& source, Eigen::VectorXd weights,
-                       const BlockOptions& options) {
+StableFit weighted_fit(const FrameSource& source, Eigen::VectorXd weights, const Context& context) {
   const RigidFitter fitter(source.rest(), weights);
   const int vertices = source.vertices();
   const FrameNumbers found = over_frames(
-      source, vertices, kTransformNumbers, options,
+      source, vertices, kTransformNumbers,
       [&](int, const FrameBlock& block, FrameRows& numbers) {
         for (int row = 0; row < block.frames(); ++row) {
           const PositionsView frame = block.frame(row);
@@ -157,7 +158,8 @@ StableFit weighted_fit(const FrameSource& source, Eigen::VectorXd weights,
           squared_residuals(frame, source.rest(), motion, numbers.row(row).head(vertices));
           numbers.row(row).tail<kTransformNumbers>() = numbers_of(motion);
         }
-      });
+      },
+      context);
   return {transforms_of(found.of_each), std::move(weights),
           (found.sum / source.frames()).cwiseSqrt()};
 }
@@ -168,16 +170,15 @@ StableFit weighted_fit(const FrameSource& source, Eigen::VectorXd weights,
 ///
 /// [Geman, McClure. Statistical methods for tomographic image reconstruction. Bull. ISI 52, 1987],
 /// annealed as in [Blake, Zisserman. Visual Reconstruction. MIT Press, 1987]
-StableFit fit_stable(const FrameSource& source, const BlockOptions& options) {
+StableFit fit_stable(const FrameSource& source, const Context& context) {
   const double least_scale = kLeastScale * box_diagonal(source.rest());
   StableFit fit;
   fit.weights = Eigen::VectorXd::Ones(source.vertices());
   std::optional<double> scale;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     const double done = iteration;
-    const Progress progress =
-        part_of(options.progress, done / kMaxIterations, (done + 1) / kMaxIterations);
-    fit = weighted_fit(source, std::move(fit.weights), {options.threads, progress, options.ranks});
+    fit = weighted_fit(source, std::move(fit.weights),
+                       context.part(done / kMaxIterations, (done + 1) / kMaxIterations));
     const double target = std::max(quantile(fit.residuals, kStableShare), least_scale);
     if (target == 0) break;  // every vertex is in one place
     const bool settled = scale == least_scale;
@@ -246,11 +247,12 @@ std::vector<std::array<RigidFitter, 2>> fitters_of_halves(const Positions& rest,
 constexpr int kLeastVertices = 6;
 
 double disagreement_of_halves(const FrameSource& source, const Eigen::VectorXd& weights,
-                              const BlockOptions& options) {
+                              const Context& context) {
   if (source.vertices() < kLeastVertices) return 0;
   const auto fitters = fitters_of_halves(source.rest(), weights);
-  const FrameNumbers squares =
-      over_frames(source, 3, 0, options, [&](int, const FrameBlock& block, FrameRows& numbers) {
+  const FrameNumbers squares = over_frames(
+      source, 3, 0,
+      [&](int, const FrameBlock& block, FrameRows& numbers) {
         for (int row = 0; row < block.frames(); ++row) {
           for (int axis = 0; axis < 3; ++axis) {
             const auto rotation = [&](int half) {
@@ -260,7 +262,8 @@ double disagreement_of_halves(const FrameSource& source, const Eigen::VectorXd& 
             numbers(row, axis) = difference.angle() * difference.angle();
           }
         }
-      });
+      },
+      context);
   return std::sqrt(squares.sum.maxCoeff() / source.frames());
 }
 
@@ -341,33 +344,28 @@ RigidTransform rigid_fit(const Eigen::Ref<const Positions>& from,
   return RigidFitter(from, weights).carry_to(to);
 }
 
-std::vector<RigidTransform> rigid_motion(const FrameSource& source,
-                                         const AlignmentOptions& options) {
+std::vector<RigidTransform> rigid_motion(const FrameSource& source, const AlignmentOptions& options,
+                                         const Context& context) {
   check_options(options);
   std::vector<RigidTransform> motion(source.frames());
   if (source.vertices() == 0) return motion;
-  const BlockOptions blocks{options.threads, options.progress, options.ranks};
   if (options.vertices == AlignmentVertices::all) {
-    motion = fit_frames(source, Eigen::VectorXd::Ones(source.vertices()), blocks);
+    motion = fit_frames(source, Eigen::VectorXd::Ones(source.vertices()), context);
   } else {
-    motion = stable_motion(source, options).motion;
+    motion = stable_motion(source, context).motion;
   }
-  report_progress(options.progress, 1);
+  context.report(1);
   return motion;
 }
 
-StableMotion stable_motion(const FrameSource& source, const AlignmentOptions& options) {
-  check_options(options);
+StableMotion stable_motion(const FrameSource& source, const Context& context) {
   StableMotion stable{std::vector<RigidTransform>(source.frames())};
   if (source.vertices() == 0) return stable;
-  StableFit fit =
-      fit_stable(source, {options.threads, part_of(options.progress, 0, kFitShare), options.ranks});
+  StableFit fit = fit_stable(source, context.part(0, kFitShare));
   if (is_significant(source, fit)) stable.motion = std::move(fit.motion);
   stable.stillest = quantile(fit.residuals, kStableShare);
-  stable.disagreement = disagreement_of_halves(
-      source, fit.weights,
-      {options.threads, part_of(options.progress, kFitShare, 1), options.ranks});
-  report_progress(options.progress, 1);
+  stable.disagreement = disagreement_of_halves(source, fit.weights, context.part(kFitShare, 1));
+  context.report(1);
   return stable;
 }
 
@@ -384,8 +382,9 @@ std::shared_ptr<const FrameSource> without_motion(std::shared_ptr<const FrameSou
   return with_motion(std::move(source), std::move(inverse));
 }
 
-Alignment align(const MeshSequence& sequence, const AlignmentOptions& options) {
-  return align(sequence, rigid_motion(sequence, options));
+Alignment align(const MeshSequence& sequence, const AlignmentOptions& options,
+                const Context& context) {
+  return align(sequence, rigid_motion(sequence, options, context));
 }
 
 Alignment align(const MeshSequence& sequence, std::vector<RigidTransform> motion) {

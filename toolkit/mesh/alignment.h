@@ -4,10 +4,10 @@
 #include <string_view>
 #include <vector>
 
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/mesh_sequence.h"
 #include "toolkit/mesh/option.h"
-#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 
@@ -55,11 +55,6 @@ constexpr std::string_view choice_name(AlignmentVertices value) {
 
 struct AlignmentOptions {
   AlignmentVertices vertices = AlignmentVertices::stable;
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  Progress progress = {};
-  /// Processes that frames are dealt out to, as in BlockOptions.
-  const Ranks* ranks = nullptr;
 
   static constexpr Option kVertices{"vertices", &AlignmentOptions::vertices};
   static constexpr auto declared() { return std::tuple(kVertices); }
@@ -76,7 +71,8 @@ struct AlignmentOptions {
 /// `stable` reads all frames up to 40 times, so that a source that is slow to read should be
 /// stored(). Throws what reading throws, Cancelled.
 std::vector<RigidTransform> rigid_motion(const FrameSource& source,
-                                         const AlignmentOptions& options = {});
+                                         const AlignmentOptions& options = {},
+                                         const Context& context = {});
 
 /// The motion of what moves least, and how well that tells it.
 struct StableMotion {
@@ -97,8 +93,8 @@ struct StableMotion {
 /// by 0.2 to 1.6.
 constexpr double kUncertainDisagreement = 0.35;
 
-/// rigid_motion() with AlignmentVertices::stable. `options` but for the vertices. Throws the same.
-StableMotion stable_motion(const FrameSource& source, const AlignmentOptions& options = {});
+/// rigid_motion() with AlignmentVertices::stable. Throws the same.
+StableMotion stable_motion(const FrameSource& source, const Context& context = {});
 
 /// Frame f becomes motion[f].apply(frame f) when it is read; the rest pose stays as it is. Throws
 /// MismatchError where the count differs from the frames.
@@ -117,7 +113,8 @@ struct Alignment {
 };
 
 /// Removes rigid_motion(sequence) from each frame.
-Alignment align(const MeshSequence& sequence, const AlignmentOptions& options = {});
+Alignment align(const MeshSequence& sequence, const AlignmentOptions& options = {},
+                const Context& context = {});
 
 /// Removes the given motion (F). Throws MismatchError where the count differs from the frames.
 Alignment align(const MeshSequence& sequence, std::vector<RigidTransform> motion);

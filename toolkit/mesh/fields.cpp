@@ -50,10 +50,10 @@ Eigen::MatrixXd on_polygons(const Eigen::MatrixXd& on_triangles, const Connectiv
 }
 
 FieldSequence held_like(const FieldSequence& like, std::shared_ptr<const FrameSource> frames,
-                        const BlockOptions& options) {
+                        const Context& context) {
   FieldSequence made(std::move(frames));
   if (!like.is_in_memory() || made.is_in_memory()) return made;
-  return MeshSequence(*made.frames, options);
+  return MeshSequence(*made.frames, context);
 }
 
 }  // namespace mimetra

@@ -57,6 +57,6 @@ Eigen::MatrixXd on_polygons(const Eigen::MatrixXd& on_triangles, const Connectiv
 /// Other frames in place of those of `like`: in memory where these are, otherwise read when they
 /// are needed, without its fields. Throws what reading throws, Cancelled.
 FieldSequence held_like(const FieldSequence& like, std::shared_ptr<const FrameSource> frames,
-                        const BlockOptions& options = {});
+                        const Context& context = {});
 
 }  // namespace mimetra

@@ -128,13 +128,14 @@ double share_of_other_edges(const Positions& pose, const Positions& other,
          static_cast<double>(std::max<Eigen::Index>(1, triangles.size()));
 }
 
-std::vector<FrameShape> frame_shapes(const FrameSource& sequence, const BlockOptions& options) {
+std::vector<FrameShape> frame_shapes(const FrameSource& sequence, const Context& context) {
   const RestShape rest(sequence);
   const Frames first_pose = sequence.read(0, 1);
   const Positions start =
       PositionsView(first_pose.data(), sequence.vertices(), 3)(rest.surface, Eigen::all);
   const FrameNumbers numbers = over_frames(
-      sequence, 0, kShapeNumbers, options, [&](int, const FrameBlock& block, FrameRows& of_block) {
+      sequence, 0, kShapeNumbers,
+      [&](int, const FrameBlock& block, FrameRows& of_block) {
         for (int row = 0; row < block.frames(); ++row) {
           const PositionsView pose = block.frame(row);
           FrameShape shape = shape_of(pose, rest);
@@ -142,7 +143,8 @@ std::vector<FrameShape> frame_shapes(const FrameSource& sequence, const BlockOpt
           shape.from_first = std::sqrt((surface - start).rowwise().squaredNorm().maxCoeff());
           of_block.row(row) = numbers_of(shape);
         }
-      });
+      },
+      context);
   std::vector<FrameShape> shapes;
   shapes.reserve(static_cast<std::size_t>(sequence.frames()));
   for (const auto& of_frame : numbers.of_each.rowwise()) shapes.push_back(shape_from(of_frame));

@@ -50,7 +50,7 @@ struct FrameShape {
 };
 
 /// Of every frame (F). Throws what reading throws, Cancelled.
-std::vector<FrameShape> frame_shapes(const FrameSource& sequence, const BlockOptions& options = {});
+std::vector<FrameShape> frame_shapes(const FrameSource& sequence, const Context& context = {});
 
 /// Frames that cannot be poses of the sequence's mesh, ascending.
 struct OddFrames {

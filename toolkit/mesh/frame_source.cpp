@@ -118,15 +118,6 @@ int in_fours(int wanted, int most) {
   return most < 4 ? std::max(1, wanted) : std::max(4, wanted / 4 * 4);
 }
 
-/// Blocks of so many numbers that each rank computes before they are exchanged; the same on all,
-/// however many threads they have.
-int dealt_blocks(Eigen::Index numbers) {
-  constexpr std::size_t kBytes = std::size_t{64} << 20;
-  const std::size_t block =
-      sizeof(double) * static_cast<std::size_t>(std::max<Eigen::Index>(1, numbers));
-  return static_cast<int>(std::clamp<std::size_t>(kBytes / block, 2, 32));
-}
-
 /// As many as fit a block, but enough blocks for threads to share.
 int frames_in_block(const FrameSource& source, Eigen::Index numbers) {
   constexpr int kBlocks = 64;
@@ -239,82 +230,54 @@ std::shared_ptr<const FrameSource> some_vertices(std::shared_ptr<const FrameSour
   return std::make_shared<const VertexFrames>(std::move(source), first, count);
 }
 
-void for_each_run(const FrameSource& source, const BlockOptions& options,
-                  const std::function<void(int, int)>& work) {
+void for_each_run(const FrameSource& source, const std::function<void(int, int)>& work,
+                  const Context& context) {
   const int size = frames_in_block(source, numbers_of_pose(source));
   const auto work_on = [&](int block) {
     const int first = block * size;
     work(first, std::min(size, source.frames() - first));
   };
-  parallel_for((source.frames() + size - 1) / size, options.threads, work_on, options.progress);
+  parallel_for((source.frames() + size - 1) / size, work_on, context);
 }
 
-void for_each_dealt(int frames, int at_once, Eigen::Index columns, const BlockOptions& options,
-                    const ComputeBlock& compute, const TakeBlock& take) {
-  const int blocks = (frames + at_once - 1) / at_once;
-  const auto length = [&](int block) { return std::min(at_once, frames - block * at_once); };
-  const auto computed = [&](int block) { return compute(block * at_once, length(block)); };
-  if (!options.ranks) {
-    const auto work = [&](int block) { take(block * at_once, computed(block)); };
-    return parallel_for(blocks, options.threads, work, options.progress);
-  }
-  const int rank = options.ranks->rank(), ranks = options.ranks->count();
-  const int together = dealt_blocks(at_once * columns) * ranks;
-  for (int start = 0; start < blocks; start += together) {
-    report_progress(options.progress, static_cast<double>(start) / blocks);
-    const int end = std::min(blocks, start + together);
-    std::vector<FrameRows> own(std::max(0, (end - start - rank + ranks - 1) / ranks));
-    parallel_for(static_cast<int>(own.size()), options.threads,
-                 [&](int i) { own[i] = computed(start + rank + i * ranks); });
-    for (int block = start; block < end; ++block) {
-      const int owner = (block - start) % ranks;
-      FrameRows rows = owner == rank ? std::move(own[(block - start) / ranks])
-                                     : FrameRows(length(block), columns);
-      options.ranks->broadcast(owner, {rows.data(), static_cast<std::size_t>(rows.size())});
-      take(block * at_once, rows);
-    }
-  }
-  report_progress(options.progress, 1);
-}
-
-void for_each_block(const FrameSource& source, const BlockOptions& options,
-                    const std::function<void(int, const Frames&)>& work) {
-  for_each_dealt(
+void for_each_block(const FrameSource& source, const std::function<void(int, const Frames&)>& work,
+                    const Context& context) {
+  context.for_each_block(
       source.frames(), frames_in_block(source, numbers_of_pose(source)), numbers_of_pose(source),
-      options, [&source](int first, int count) { return source.read(first, count); }, work);
+      [&source](int first, int count) { return source.read(first, count); }, work);
 }
 
 FrameNumbers over_frames(const FrameSource& source, Eigen::Index summed, Eigen::Index kept,
-                         const BlockOptions& options,
-                         const std::function<void(int, const FrameBlock&, FrameRows&)>& work) {
+                         const std::function<void(int, const FrameBlock&, FrameRows&)>& work,
+                         const Context& context) {
   constexpr int kFewest = 8;  // for threads to share
   const Eigen::Index columns = summed + kept;
   const Eigen::Index numbers = std::max(numbers_of_pose(source), columns);
-  const int ranks = options.ranks ? options.ranks->count() : 1;
-  const int most = std::max(kFewest, frames_in(kBlockBytes, numbers)) * ranks;
+  const int most = std::max(kFewest, frames_in(kBlockBytes, numbers)) * context.ranks().count();
   // What is only kept is in its place already.
   const int held = summed > 0 ? in_fours(most, most) : std::max(1, source.frames());
   const int at_once = frames_in_block(source, numbers);
   FrameRows summands(std::min(held, source.frames()), summed);
   FrameNumbers result{Eigen::VectorXd::Zero(summed), FrameRows(source.frames(), kept)};
   for (int start = 0; start < source.frames(); start += held) {
-    report_progress(options.progress, static_cast<double>(start) / source.frames());
+    const double done = static_cast<double>(start) / source.frames();
     const int count = std::min(held, source.frames() - start);
-    for_each_dealt(
-        count, at_once, columns, {.threads = options.threads, .ranks = options.ranks},
-        [&](int first, int rows) {
-          const FrameBlock block(source, start + first, rows);
-          FrameRows found = FrameRows::Zero(rows, columns);
-          work(start + first, block, found);
-          return found;
-        },
-        [&](int first, const FrameRows& found) {
-          summands.middleRows(first, found.rows()) = found.leftCols(summed);
-          result.of_each.middleRows(start + first, found.rows()) = found.rightCols(kept);
-        });
+    context.part(done, static_cast<double>(start + count) / source.frames())
+        .for_each_block(
+            count, at_once, columns,
+            [&](int first, int rows) {
+              const FrameBlock block(source, start + first, rows);
+              FrameRows found = FrameRows::Zero(rows, columns);
+              work(start + first, block, found);
+              return found;
+            },
+            [&](int first, const FrameRows& found) {
+              summands.middleRows(first, found.rows()) = found.leftCols(summed);
+              result.of_each.middleRows(start + first, found.rows()) = found.rightCols(kept);
+            });
     for (int row = 0; row < count; ++row) result.sum += summands.row(row).transpose();
   }
-  report_progress(options.progress, 1);
+  context.report(1);
   return result;
 }
 
@@ -335,15 +298,16 @@ Positions mean_pose(const FrameSource& source) {
   return PositionsView(rows.data(), source.vertices(), 3);
 }
 
-double motion(const FrameSource& source, const BlockOptions& options) {
+double motion(const FrameSource& source, const Context& context) {
   // One sum a frame, added in their order: the same for every number of threads.
   Eigen::VectorXd squares(source.frames());
-  for_each_block(source, options, [&](int first, const Frames& poses) {
+  const auto add_squares = [&](int first, const Frames& poses) {
     for (Eigen::Index row = 0; row < poses.rows(); ++row) {
       const PositionsView pose(poses.row(row).data(), source.vertices(), 3);
       squares[first + row] = (pose - source.rest()).squaredNorm();
     }
-  });
+  };
+  for_each_block(source, add_squares, context);
   double sum = 0;
   for (const double square : squares) sum += square;
   const double points = static_cast<double>(source.frames()) * source.vertices();

@@ -6,10 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/progress.h"
-#include "toolkit/mesh/ranks.h"
 #include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
@@ -156,45 +155,20 @@ std::shared_ptr<const FrameSource> with_z_up(std::shared_ptr<const FrameSource> 
 std::shared_ptr<const FrameSource> some_vertices(std::shared_ptr<const FrameSource> source,
                                                  VertexIndex first, int count);
 
-struct BlockOptions {
-  /// 0 for all there are.
-  int threads = 0;
-  Progress progress = {};
-  /// Processes that frames are dealt out to: all make the same calls with the same frames, and get
-  /// the same. Null for this one alone.
-  const Ranks* ranks = nullptr;
-};
-
 /// Most bytes of a block of frames, unless one frame takes more.
 constexpr std::size_t kBlockBytes = std::size_t{4} << 20;
 
 /// Calls `work` with runs of frames (first frame, how many), each of at most kBlockBytes, that hold
 /// every frame once, in any order, from several threads. Throws what `work` throws, Cancelled.
-void for_each_run(const FrameSource& source, const BlockOptions& options,
-                  const std::function<void(int first, int count)>& work);
-
-/// Rows of numbers, one of each frame in a block.
-using FrameRows = Frames;
-
-/// What is computed of the frames `first` .. first + count - 1: a row of each.
-using ComputeBlock = std::function<FrameRows(int first, int count)>;
-/// The rows of a block that starts with frame `first`.
-using TakeBlock = std::function<void(int first, const FrameRows& rows)>;
-
-/// Computes `columns` numbers of each of so many frames, in blocks of `at_once`, each on one of the
-/// ranks, and gives every block to `take` on all of them. Both are called from several threads, in
-/// any order; on several ranks `take` from this one, and a rank holds no more of its blocks than
-/// fill 64 MB, or two. Throws what they throw, Cancelled; where one rank alone throws, the others
-/// wait for it.
-void for_each_dealt(int frames, int at_once, Eigen::Index columns, const BlockOptions& options,
-                    const ComputeBlock& compute, const TakeBlock& take);
+void for_each_run(const FrameSource& source, const std::function<void(int first, int count)>& work,
+                  const Context& = {});
 
 /// Calls `work` with every frame of `source` once, in blocks (first frame, poses) of at most
-/// kBlockBytes for each thread, in any order, from several threads; on several ranks as
-/// for_each_dealt(), which reads each frame on one of them. Throws what reading and `work` throw,
-/// Cancelled.
-void for_each_block(const FrameSource& source, const BlockOptions& options,
-                    const std::function<void(int first, const Frames& poses)>& work);
+/// kBlockBytes for each thread. Several threads call `work`, in any order. Processes share the
+/// reading as Context::for_each_block() does. Throws what reading and `work` throw, Cancelled.
+void for_each_block(const FrameSource& source,
+                    const std::function<void(int first, const Frames& poses)>& work,
+                    const Context& = {});
 
 /// What frames give.
 struct FrameNumbers {
@@ -202,20 +176,20 @@ struct FrameNumbers {
   FrameRows of_each;    ///< F x what is kept of each
 };
 
-/// Numbers of each frame, of which the first `summed` are added in the order of the frames and the
-/// further `kept` are kept: the same for every number of threads and of ranks, which frames are
-/// dealt out to. `work` is called from several threads and writes the numbers of a block that
-/// starts with frame `first` (frames x (summed + kept), 0 before). No more summands are held than
-/// fill kBlockBytes for each rank, or are those of eight frames. Throws what reading and `work`
-/// throw, Cancelled.
+/// Computes summed + kept numbers of each frame, adds the first `summed` in the order of the frames
+/// and keeps the others. Several threads call `work`, which writes the numbers of a block that
+/// starts with frame `first` (frames x (summed + kept), 0 before); processes share the frames. At
+/// most kBlockBytes of summands a process are held, or those of eight frames. Throws what reading
+/// and `work` throw, Cancelled.
 FrameNumbers over_frames(
-    const FrameSource& source, Eigen::Index summed, Eigen::Index kept, const BlockOptions& options,
-    const std::function<void(int first, const FrameBlock& block, FrameRows& numbers)>& work);
+    const FrameSource& source, Eigen::Index summed, Eigen::Index kept,
+    const std::function<void(int first, const FrameBlock& block, FrameRows& numbers)>& work,
+    const Context& = {});
 
 /// Mean of all frames (N x 3).
 Positions mean_pose(const FrameSource& source);
 
 /// Root mean square over vertices and frames of the distance from the rest pose.
-double motion(const FrameSource& source, const BlockOptions& = {});
+double motion(const FrameSource& source, const Context& = {});
 
 }  // namespace mimetra

@@ -56,11 +56,11 @@ void FrameStore::read_some_vertices(int first, VertexIndex vertex, FramesView po
 }
 
 std::shared_ptr<const FrameSource> stored(std::shared_ptr<const FrameSource> source,
-                                          const BlockOptions& options) {
+                                          const Context& context) {
   if (source->is_quick()) return source;
   auto store = std::make_shared<FrameStore>(source->header());
-  for_each_block(*source, options,
-                 [&](int first, const Frames& poses) { store->write(first, poses); });
+  for_each_block(
+      *source, [&](int first, const Frames& poses) { store->write(first, poses); }, context);
   store->commit();
   return store;
 }

@@ -36,6 +36,6 @@ class FrameStore : public FrameSource, public FrameSink {
 /// The source itself where it is quick to read; otherwise its frames, read once, in a FrameStore.
 /// Throws what reading throws, OutputError, Cancelled.
 std::shared_ptr<const FrameSource> stored(std::shared_ptr<const FrameSource> source,
-                                          const BlockOptions& options = {});
+                                          const Context& context = {});
 
 }  // namespace mimetra

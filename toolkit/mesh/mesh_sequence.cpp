@@ -65,13 +65,16 @@ MeshSequence::MeshSequence(std::shared_ptr<const Connectivity> connectivity,
   check_rest(header_.rest, vertices());
 }
 
-MeshSequence::MeshSequence(const FrameSource& source, const BlockOptions& options)
+MeshSequence::MeshSequence(const FrameSource& source, const Context& context)
     : FrameSource(source), frames_(source.in_memory()) {
   if (frames_) return;
   auto all = std::make_shared<Frames>(source.frames(), 3 * Eigen::Index{vertices()});
-  for_each_run(source, options, [&](int first, int count) {
-    source.read(first, FramesView(all->row(first).data(), count, all->cols()));
-  });
+  for_each_run(
+      source,
+      [&](int first, int count) {
+        source.read(first, FramesView(all->row(first).data(), count, all->cols()));
+      },
+      context);
   frames_ = std::move(all);
 }
 

@@ -23,7 +23,7 @@ class MeshSequence : public FrameSource {
                Eigen::VectorXd times = {}, std::optional<Positions> rest = {});
   /// All frames of `source`; where they are in memory they are shared. Throws what reading throws,
   /// Cancelled.
-  explicit MeshSequence(const FrameSource& source, const BlockOptions& = {});
+  explicit MeshSequence(const FrameSource& source, const Context& = {});
 
   /// Positions of frame f (N x 3), a view into this sequence. \pre 0 <= f < frames()
   PositionsView frame(int f) const;

@@ -48,32 +48,42 @@ void check_length(std::string_view name, const Range& range, const Length& lengt
 
 /// Throws std::invalid_argument for a number out of its range, and for an enum that has no such
 /// value.
-template <typename Options, typename Value>
-void check_option(const Options& options, const Option<Options, Value>& option) {
-  const Value& value = options.*option.member;
+template <typename Value>
+void check_value(std::string_view name, const Range& range, const Value& value) {
   if constexpr (NamedChoice<Value>) {
     if (!choice_name(value).empty()) return;
-    throw std::invalid_argument(std::string(option.name) + ": no such choice");
+    throw std::invalid_argument(std::string(name) + ": no such choice");
   } else if constexpr (std::is_same_v<Value, Length>) {
-    check_length(option.name, option.range, value);
-  } else if constexpr (std::is_same_v<Value, std::optional<Length>>) {
-    if (value) check_length(option.name, option.range, *value);
-  } else if constexpr (std::is_same_v<Value, std::optional<double>> ||
-                       std::is_same_v<Value, std::optional<int>>) {
-    if (value) check_number(option.name, option.range, *value);
-  } else if constexpr (std::is_same_v<Value, std::vector<int>>) {
-    for (const int number : value) check_number(option.name, option.range, number);
+    check_length(name, range, value);
   } else {
     static_assert(std::is_arithmetic_v<Value>);
-    check_number(option.name, option.range, static_cast<double>(value));
+    check_number(name, range, static_cast<double>(value));
   }
 }
 
-/// Checks all that `Options::declared()`, a tuple of them, lists.
+template <typename Value>
+void check_value(std::string_view name, const Range& range, const std::optional<Value>& value) {
+  if (value) check_value(name, range, *value);
+}
+
+template <typename Value>
+void check_value(std::string_view name, const Range& range, const std::vector<Value>& values) {
+  for (const Value& value : values) check_value(name, range, value);
+}
+
+template <typename Options, typename Value>
+void check_option(const Options& options, const Option<Options, Value>& option) {
+  check_value(option.name, option.range, options.*option.member);
+}
+
+/// Checks the members that `Options::declared()`, a tuple of Option, lists.
 template <typename Options>
 void check_options(const Options& options) {
-  std::apply([&options](const auto&... each) { (check_option(options, each), ...); },
-             Options::declared());
+  std::apply(
+      [&options](const auto&... each) {
+        (check_value(each.name, each.range, options.*each.member), ...);
+      },
+      Options::declared());
 }
 
 }  // namespace mimetra

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/context.h"
 
 namespace mimetra {
 
@@ -58,10 +58,9 @@ class Loop {
 
 }  // namespace
 
-void parallel_for(int count, int threads, const std::function<void(int)>& work,
-                  const Progress& progress) {
+void parallel_for(int count, const std::function<void(int)>& work, const Context& context) {
   const int machine = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const int used = std::min(threads > 0 ? threads : machine, count);
+  const int used = std::min(context.threads() > 0 ? context.threads() : machine, count);
   Loop loop(count, work);
   int reported = 0;
   {
@@ -69,12 +68,12 @@ void parallel_for(int count, int threads, const std::function<void(int)>& work,
     for (int t = 1; t < used; ++t) others.emplace_back([&loop] { loop.run([](int) {}); });
     loop.run([&](int done) {
       reported = done;
-      report_progress(progress, double(done) / count);
+      context.report(double(done) / count);
     });
   }
   loop.rethrow();
   // Others may have done the last ones, or all of them.
-  if (reported < count) report_progress(progress, 1);
+  if (reported < count) context.report(1);
 }
 
 }  // namespace mimetra

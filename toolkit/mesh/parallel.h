@@ -2,18 +2,17 @@
 
 #include <functional>
 
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 
-/// Calls `work(i)` once for each i in 0 .. count - 1, from up to `threads` threads (0: as many as
-/// the machine has), the calling one among them. Which thread takes which i is open, so that `work`
-/// must write to places of its own; then the result is the same for every number of threads.
+/// Calls `work(i)` once for each i in 0 .. count - 1, from the threads of the context, the calling
+/// one among them. Any thread may take any i; if each i writes to its own place, the result does
+/// not depend on the number of threads.
 ///
-/// `progress` is called from the calling thread, last with 1. Throws what the `work` of the lowest
-/// i threw, and Cancelled; what has not begun by then is not done.
-void parallel_for(int count, int threads, const std::function<void(int)>& work,
-                  const Progress& progress = {});
+/// The calling thread reports progress, 1 at the end. Throws what the `work` of the lowest i threw,
+/// and Cancelled; the remaining i are then not started.
+void parallel_for(int count, const std::function<void(int)>& work, const Context& = {});
 
 }  // namespace mimetra

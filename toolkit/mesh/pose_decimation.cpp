@@ -191,14 +191,14 @@ class PoseModule : public OpenMesh::Decimater::ModBaseT<MeshT> {
 
 class CollapseProgress : public OpenMesh::Decimater::Observer {
  public:
-  CollapseProgress(Progress progress, std::size_t collapses)
-      : Observer(kSteps), progress_(std::move(progress)), collapses_(double(collapses)) {}
+  CollapseProgress(const Context& context, std::size_t collapses)
+      : Observer(kSteps), context_(context), collapses_(double(collapses)) {}
 
-  void notify(std::size_t done) override { report_progress(progress_, double(done) / collapses_); }
+  void notify(std::size_t done) override { context_.report(double(done) / collapses_); }
 
  private:
   static constexpr std::size_t kSteps = 100;
-  Progress progress_;
+  const Context& context_;
   double collapses_;
 };
 
@@ -218,7 +218,7 @@ double agreement(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen
 
 CollapsedSurface collapsed(const geodesic::GluedSurface& surface, const DecimationPoses& poses,
                            const std::vector<bool>& locked, std::size_t collapses,
-                           const Progress& progress) {
+                           const Context& context) {
   Mesh mesh = geodesic::mesh_of<Mesh>(surface, poses.positions.front());
   mesh.request_halfedge_status();
   OpenMesh::Decimater::DecimaterT<Mesh> decimater(mesh);
@@ -229,7 +229,7 @@ CollapsedSurface collapsed(const geodesic::GluedSurface& surface, const Decimati
   decimater.add(module);
   decimater.initialize();
   decimater.module(module).start(poses, surface);
-  CollapseProgress observer(progress, collapses);
+  CollapseProgress observer(context, collapses);
   decimater.set_observer(&observer);
   if (collapses > 0) decimater.decimate(collapses);
 

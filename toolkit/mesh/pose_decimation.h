@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "geodesic/glued_surface.h"
-#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/tri_mesh.h"
 
 /// Half-edge collapses that look at several poses of a surface. Internal to simplification.h.
@@ -34,6 +34,6 @@ struct CollapsedSurface {
 /// After so many collapses, or as many as there can be; `locked` vertices stay. Throws Cancelled.
 CollapsedSurface collapsed(const geodesic::GluedSurface& surface, const DecimationPoses& poses,
                            const std::vector<bool>& locked, std::size_t collapses,
-                           const Progress& progress);
+                           const Context& context);
 
 }  // namespace mimetra

@@ -115,7 +115,7 @@ std::string described(const RestBeyondFrames& rest) {
 }
 
 RestBeyondFrames rest_beyond_frames(const std::shared_ptr<const FrameSource>& sequence,
-                                    const BlockOptions& options) {
+                                    const Context& context) {
   constexpr int kFewest = 4;
   RestBeyondFrames found;
   found.frames = sequence->frames();
@@ -127,10 +127,14 @@ RestBeyondFrames rest_beyond_frames(const std::shared_ptr<const FrameSource>& se
   };
   const auto chosen = selected(sequence, spread_out(found.frames, kFrames));
   const auto columns = 3 * static_cast<Eigen::Index>(vertices.size());
-  const FrameRows poses =
-      over_frames(*chosen, 0, columns, options, [&](int, const FrameBlock& block, FrameRows& rows) {
-        for (int row = 0; row < block.frames(); ++row) rows.row(row) = row_of(block.frame(row));
-      }).of_each;
+  const FrameRows poses = over_frames(
+                              *chosen, 0, columns,
+                              [&](int, const FrameBlock& block, FrameRows& rows) {
+                                for (int row = 0; row < block.frames(); ++row)
+                                  rows.row(row) = row_of(block.frame(row));
+                              },
+                              context)
+                              .of_each;
 
   const auto every_other = [&poses](Eigen::Index first) -> FrameRows {
     return poses(Eigen::seq(first, poses.rows() - 1, 2), Eigen::all);

@@ -36,6 +36,6 @@ std::string described(const RestBeyondFrames& rest);
 
 /// Reads these frames once. All zero for fewer than four. Throws what reading throws, Cancelled.
 RestBeyondFrames rest_beyond_frames(const std::shared_ptr<const FrameSource>& sequence,
-                                    const BlockOptions& options = {});
+                                    const Context& context = {});
 
 }  // namespace mimetra

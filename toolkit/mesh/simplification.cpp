@@ -135,18 +135,21 @@ Positions on_surface(const PositionsView& pose, const Surface& surface, const Ve
 
 /// Frames that differ most from the rest pose and from each other, in the order in which they were
 /// found.
-std::vector<int> extreme_frames(const FrameSource& sequence, const BlockOptions& options) {
+std::vector<int> extreme_frames(const FrameSource& sequence, const Context& context) {
   std::vector<VertexIndex> sample;
   const int step = std::max(1, sequence.vertices() / kSamples);
   for (VertexIndex v = 0; v < sequence.vertices(); v += step) sample.push_back(v);
   const auto count = static_cast<Eigen::Index>(sample.size());
   Eigen::MatrixXd poses(sequence.frames(), 3 * count);
-  for_each_block(sequence, options, [&](int first, const Frames& block) {
-    for (Eigen::Index row = 0; row < block.rows(); ++row) {
-      const PositionsView pose(block.row(row).data(), sequence.vertices(), 3);
-      poses.row(first + row) = Positions(pose(sample, Eigen::all)).reshaped<Eigen::RowMajor>();
-    }
-  });
+  for_each_block(
+      sequence,
+      [&](int first, const Frames& block) {
+        for (Eigen::Index row = 0; row < block.rows(); ++row) {
+          const PositionsView pose(block.row(row).data(), sequence.vertices(), 3);
+          poses.row(first + row) = Positions(pose(sample, Eigen::all)).reshaped<Eigen::RowMajor>();
+        }
+      },
+      context);
   const Eigen::RowVectorXd rest =
       Positions(sequence.rest()(sample, Eigen::all)).reshaped<Eigen::RowMajor>().transpose();
   Eigen::VectorXd farthest = (poses.rowwise() - rest).rowwise().squaredNorm();
@@ -167,7 +170,7 @@ struct Folds {
 };
 
 Folds folds_of(const FrameSource& sequence, const Surface& surface, const CollapsedSurface& mesh,
-               const BlockOptions& options) {
+               const Context& context) {
   std::vector<int> made;
   for (Eigen::Index i = 0; i < mesh.corners.rows(); ++i) {
     auto before = std::array<int, 3>{}, after = std::array<int, 3>{};
@@ -182,24 +185,28 @@ Folds folds_of(const FrameSource& sequence, const Surface& surface, const Collap
   Folds folds;
   folds.in_frame.resize(static_cast<std::size_t>(sequence.frames()), 0);
   std::vector<std::vector<int>> folded(folds.in_frame.size());
-  for_each_block(sequence, options, [&](int first, const Frames& poses) {
-    for (Eigen::Index row = 0; row < poses.rows(); ++row) {
-      const Positions pose = on_surface(
-          PositionsView(poses.row(row).data(), sequence.vertices(), 3), surface, Vector::Zero(), 1);
-      const Positions normals =
-          vertex_normals(pose, surface.glued.triangles).rowwise().normalized();
-      for (const int i : made) {
-        const auto is_turned = [&](const auto& c) {
-          const Vector around = normals.row(c[0]) + normals.row(c[1]) + normals.row(c[2]);
-          return agreement(pose.row(c[0]), pose.row(c[1]), pose.row(c[2]), around) <= 0;
-        };
-        if (!is_turned(mesh.corners.row(i))) continue;
-        // The given triangle that it was may be so, too: an eyelid that closes.
-        if (is_turned(surface.glued.triangles.row(mesh.triangles[std::size_t(i)]))) continue;
-        folded[static_cast<std::size_t>(first + row)].push_back(i);
-      }
-    }
-  });
+  for_each_block(
+      sequence,
+      [&](int first, const Frames& poses) {
+        for (Eigen::Index row = 0; row < poses.rows(); ++row) {
+          const Positions pose =
+              on_surface(PositionsView(poses.row(row).data(), sequence.vertices(), 3), surface,
+                         Vector::Zero(), 1);
+          const Positions normals =
+              vertex_normals(pose, surface.glued.triangles).rowwise().normalized();
+          for (const int i : made) {
+            const auto is_turned = [&](const auto& c) {
+              const Vector around = normals.row(c[0]) + normals.row(c[1]) + normals.row(c[2]);
+              return agreement(pose.row(c[0]), pose.row(c[1]), pose.row(c[2]), around) <= 0;
+            };
+            if (!is_turned(mesh.corners.row(i))) continue;
+            // The given triangle that it was may be so, too: an eyelid that closes.
+            if (is_turned(surface.glued.triangles.row(mesh.triangles[std::size_t(i)]))) continue;
+            folded[static_cast<std::size_t>(first + row)].push_back(i);
+          }
+        }
+      },
+      context);
   folds.triangle.resize(static_cast<std::size_t>(mesh.corners.rows()));
   for (std::size_t f = 0; f < folded.size(); ++f) {
     folds.in_frame[f] = static_cast<int>(folded[f].size());
@@ -355,11 +362,9 @@ class Remaining {
 
 }  // namespace
 
-Simplification simplify(const FrameSource& sequence, const SimplifyOptions& options) {
+Simplification simplify(const FrameSource& sequence, const SimplifyOptions& options,
+                        const Context& context) {
   check_options(options);
-  const auto part = [&options](double from, double to) -> BlockOptions {
-    return {.threads = options.threads, .progress = part_of(options.progress, from, to)};
-  };
   const Surface surface = surface_of(sequence.connectivity());
   const TextureCharts charts = charts_of(sequence.connectivity());
   const std::vector<bool> locked = locked_vertices(sequence, surface, charts);
@@ -372,7 +377,7 @@ Simplification simplify(const FrameSource& sequence, const SimplifyOptions& opti
     poses.add(on_surface(pose, surface, middle, scale), surface.glued.triangles);
   };
   add(PositionsView(sequence.rest().data(), sequence.vertices(), 3));
-  for (const int frame : extreme_frames(sequence, part(0, 0.1))) {
+  for (const int frame : extreme_frames(sequence, context.part(0, 0.1))) {
     add(FrameBlock(sequence, frame, 1).frame(0));
   }
   poses.planes = std::min(1 + kPlanePoses, static_cast<int>(poses.positions.size()));
@@ -383,8 +388,9 @@ Simplification simplify(const FrameSource& sequence, const SimplifyOptions& opti
   for (int round = 0; round < kRounds; ++round) {
     const double from = 0.1 + 0.9 * round / kRounds;
     left = collapsed(surface.glued, poses, on_glued, collapses,
-                     part_of(options.progress, from, from + 0.5 / kRounds));
-    folds = folds_of(sequence, surface, left, part(from + 0.5 / kRounds, from + 0.9 / kRounds));
+                     context.part(from, from + 0.5 / kRounds));
+    folds =
+        folds_of(sequence, surface, left, context.part(from + 0.5 / kRounds, from + 0.9 / kRounds));
     const std::vector<int> frames = worst_frames(folds.in_frame);
     if (frames.empty()) break;
     keep_around(folds, left, surface, on_glued);
@@ -396,7 +402,7 @@ Simplification simplify(const FrameSource& sequence, const SimplifyOptions& opti
   result.connectivity = remaining.connectivity(result.vertices);
   result.locked = static_cast<int>(std::ranges::count(locked, true));
   result.folded = static_cast<int>(std::ranges::count(folds.triangle, true));
-  report_progress(options.progress, 1);
+  context.report(1);
   return result;
 }
 

@@ -11,9 +11,6 @@ namespace mimetra {
 struct SimplifyOptions {
   /// Of the vertices that are kept, in (0, 1].
   double share = 0.25;
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  Progress progress = {};
 
   static constexpr Option kShare{"share", &SimplifyOptions::share, {.minimum = 1e-6, .maximum = 1}};
   static constexpr auto declared() { return std::tuple(kShare); }
@@ -43,6 +40,7 @@ struct Simplification {
 ///
 /// [Garland, Heckbert. Surface simplification using quadric error metrics. SIGGRAPH 1997;
 ///  Mohr, Gleicher. Deformation sensitive decimation. 2003]
-Simplification simplify(const FrameSource& sequence, const SimplifyOptions& options = {});
+Simplification simplify(const FrameSource& sequence, const SimplifyOptions& options = {},
+                        const Context& context = {});
 
 }  // namespace mimetra

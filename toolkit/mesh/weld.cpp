@@ -83,7 +83,7 @@ Triangles Weld::welded(const Triangles& triangles) const {
 }
 
 std::vector<VertexIndex> parting_vertices(const FrameSource& sequence, const Weld& weld,
-                                          double tolerance, const BlockOptions& options) {
+                                          double tolerance, const Context& context) {
   if (static_cast<int>(weld.representative.size()) != sequence.vertices()) {
     throw std::invalid_argument("a weld of " + std::to_string(weld.representative.size()) +
                                 " vertices for a sequence of " +
@@ -92,18 +92,21 @@ std::vector<VertexIndex> parting_vertices(const FrameSource& sequence, const Wel
   const std::vector<VertexIndex> welded = welded_vertices(weld);
   if (welded.empty()) return {};
   std::vector<std::atomic<bool>> parts(weld.representative.size());
-  for_each_run(sequence, options, [&](int first, int count) {
-    const FrameBlock block(sequence, first, count);
-    for (int row = 0; row < count; ++row) {
-      const PositionsView frame = block.frame(row);
-      for (const VertexIndex vertex : welded) {
-        const VertexIndex lowest = weld.representative[vertex];
-        // Not-a-number parts, too.
-        if ((frame.row(vertex) - frame.row(lowest)).norm() <= tolerance) continue;
-        parts[vertex].store(true, std::memory_order_relaxed);
-      }
-    }
-  });
+  for_each_run(
+      sequence,
+      [&](int first, int count) {
+        const FrameBlock block(sequence, first, count);
+        for (int row = 0; row < count; ++row) {
+          const PositionsView frame = block.frame(row);
+          for (const VertexIndex vertex : welded) {
+            const VertexIndex lowest = weld.representative[vertex];
+            // Not-a-number parts, too.
+            if ((frame.row(vertex) - frame.row(lowest)).norm() <= tolerance) continue;
+            parts[vertex].store(true, std::memory_order_relaxed);
+          }
+        }
+      },
+      context);
   std::vector<VertexIndex> parting;
   std::ranges::copy_if(welded, std::back_inserter(parting),
                        [&parts](VertexIndex vertex) { return parts[vertex].load(); });
@@ -111,14 +114,13 @@ std::vector<VertexIndex> parting_vertices(const FrameSource& sequence, const Wel
 }
 
 Weld staying_together(const FrameSource& sequence, const Weld& weld, double tolerance,
-                      const BlockOptions& options) {
+                      const Context& context) {
   Weld staying = weld, tested = weld;
   double done = 0;
   do {
     // Nobody knows how often something parts: each time, half of the progress that is left.
     const double next = (1 + done) / 2;
-    const auto parting = parting_vertices(sequence, tested, tolerance,
-                                          {options.threads, part_of(options.progress, done, next)});
+    const auto parting = parting_vertices(sequence, tested, tolerance, context.part(done, next));
     done = next;
     Weld left = Weld::none(sequence.vertices());
     std::vector<VertexIndex> lowest_left(weld.representative.size(), -1);

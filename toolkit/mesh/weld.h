@@ -33,13 +33,13 @@ struct Weld {
 /// ascending. Frames are read in blocks, and not at all where nothing is welded. Throws
 /// std::invalid_argument where the weld is of another vertex count; what reading throws, Cancelled.
 std::vector<VertexIndex> parting_vertices(const FrameSource& sequence, const Weld& weld,
-                                          double tolerance, const BlockOptions& = {});
+                                          double tolerance, const Context& = {});
 
 /// Splits what parts: every vertex of the result stays within `tolerance` (length) of its
 /// representative in all frames. Those of one place that part from the lowest are welded to the
 /// lowest of them, unless they part from it in turn, and so on; where nothing parts, the frames are
 /// read once. Throws as parting_vertices().
 Weld staying_together(const FrameSource& sequence, const Weld& weld, double tolerance,
-                      const BlockOptions& = {});
+                      const Context& = {});
 
 }  // namespace mimetra

@@ -106,17 +106,18 @@ WholeMotion whole_motion(const Positions& rest, const Positions& pose) {
   return together(rest, numbers.head<kSummed>().transpose(), numbers.tail<kNumbers - kSummed>());
 }
 
-WholeMotion whole_motion(const FrameSource& source, const BlockOptions& options) {
+WholeMotion whole_motion(const FrameSource& source, const Context& context) {
   const std::vector<VertexIndex> surface = surface_vertices(source.rest(), source.triangles());
   const Positions rest = source.rest()(surface, Eigen::all);
-  const FrameNumbers numbers = over_frames(source, kSummed, kNumbers - kSummed, options,
-                                           [&](int, const FrameBlock& block, FrameRows& of_block) {
-                                             for (int row = 0; row < block.frames(); ++row) {
-                                               const Positions pose =
-                                                   block.frame(row)(surface, Eigen::all);
-                                               of_block.row(row) = numbers_of(rest, pose);
-                                             }
-                                           });
+  const FrameNumbers numbers = over_frames(
+      source, kSummed, kNumbers - kSummed,
+      [&](int, const FrameBlock& block, FrameRows& of_block) {
+        for (int row = 0; row < block.frames(); ++row) {
+          const Positions pose = block.frame(row)(surface, Eigen::all);
+          of_block.row(row) = numbers_of(rest, pose);
+        }
+      },
+      context);
   return together(rest, numbers.sum, numbers.of_each);
 }
 

@@ -37,6 +37,6 @@ struct WholeMotion {
 WholeMotion whole_motion(const Positions& rest, const Positions& pose);
 
 /// Reads the frames once. Throws what reading throws, Cancelled.
-WholeMotion whole_motion(const FrameSource& source, const BlockOptions& options = {});
+WholeMotion whole_motion(const FrameSource& source, const Context& context = {});
 
 }  // namespace mimetra

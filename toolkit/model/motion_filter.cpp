@@ -37,24 +37,22 @@ MotionFilter::MotionFilter(const Eigen::VectorXd& times, double smoothness)
   }
 }
 
-Frames MotionFilter::operator()(Frames frames, const BlockOptions& options) const {
+Frames MotionFilter::operator()(Frames frames, const Context& context) const {
   if (frames.rows() != frames_) {
     throw std::invalid_argument(std::to_string(frames.rows()) + " frames, expected " +
                                 std::to_string(frames_) + ", one for each time");
   }
   if (!acts_) return frames;
   const auto blocks = static_cast<int>((frames.cols() + kCoordinates - 1) / kCoordinates);
-  parallel_for(
-      blocks, options.threads,
-      [&](int block) {
-        const Eigen::Index first = Eigen::Index{block} * kCoordinates;
-        const auto count = std::min<Eigen::Index>(kCoordinates, frames.cols() - first);
-        Block x = Block::Zero(frames_, kCoordinates);
-        x.leftCols(count) = frames.middleCols(first, count);
-        smooth(x);
-        frames.middleCols(first, count) = x.leftCols(count);
-      },
-      options.progress);
+  const auto smooth_block = [&](int block) {
+    const Eigen::Index first = Eigen::Index{block} * kCoordinates;
+    const auto count = std::min<Eigen::Index>(kCoordinates, frames.cols() - first);
+    Block x = Block::Zero(frames_, kCoordinates);
+    x.leftCols(count) = frames.middleCols(first, count);
+    smooth(x);
+    frames.middleCols(first, count) = x.leftCols(count);
+  };
+  parallel_for(blocks, smooth_block, context);
   return frames;
 }
 

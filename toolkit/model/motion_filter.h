@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/frame_source.h"
 #include "toolkit/model/second_differences.h"
 
@@ -25,7 +26,7 @@ class MotionFilter {
   /// F x any number of coordinates, each on its own; the frames themselves where there are fewer
   /// than three or the smoothness is 0. Throws std::invalid_argument for another number of frames,
   /// Cancelled.
-  Frames operator()(Frames frames, const BlockOptions& = {}) const;
+  Frames operator()(Frames frames, const Context& = {}) const;
 
  private:
   /// So many coordinates of 1000 frames stay in a core's cache. All blocks are as wide, so that

@@ -72,8 +72,7 @@ struct Moved {
 
 /// Says where frames that motion is to be given back to have one of the whole mesh.
 void warn_of_motion_before(const FrameSource& given, const Invocation& invocation) {
-  const WholeMotion whole =
-      whole_motion(given, {.threads = invocation.threads, .ranks = invocation.ranks});
+  const WholeMotion whole = whole_motion(given, invocation.context.part(0, 0));
   if (!whole.moves()) return;
   invocation.warn(invocation.input("sequence").name + ": turns by up to " +
                   readable(whole.angle, 3) + " degrees and moves by up to " +
@@ -136,24 +135,20 @@ void warn_of_other_space(const KeptMotion& kept, const Invocation& invocation) {
 
 Moved moved(const Invocation& invocation) {
   std::shared_ptr<const FrameSource> given = invocation.get<FieldSequence>("sequence").frames;
-  AlignCall call = align_parameters().read(invocation.parameters);
+  const AlignCall call = align_parameters().read(invocation.parameters);
   if (call.undo) {
     KeptMotion kept = read_motion(call.undo->string(), given->frames());
     warn_of_other_space(kept, invocation);
     warn_of_motion_before(*given, invocation);
     return {with_motion(given, kept.transforms), std::move(kept.transforms)};
   }
-  given = stored(given, {.threads = invocation.threads,
-                         .progress = part_of(invocation.progress, 0, kFittingFrom),
-                         .ranks = invocation.ranks});
-  call.alignment.threads = invocation.threads;
-  call.alignment.ranks = invocation.ranks;
-  call.alignment.progress = part_of(invocation.progress, kFittingFrom, kFittingTo);
+  given = stored(given, invocation.context.part(0, kFittingFrom));
+  const Context fitting = invocation.context.part(kFittingFrom, kFittingTo);
   if (call.alignment.vertices == AlignmentVertices::all) {
-    std::vector<RigidTransform> motion = rigid_motion(*given, call.alignment);
+    std::vector<RigidTransform> motion = rigid_motion(*given, call.alignment, fitting);
     return {without_motion(given, motion), std::move(motion)};
   }
-  StableMotion stable = stable_motion(*given, call.alignment);
+  StableMotion stable = stable_motion(*given, fitting);
   return {without_motion(given, stable.motion), std::move(stable.motion), stable.disagreement};
 }
 
@@ -193,9 +188,8 @@ Outcome run_align(const Invocation& invocation) {
                     readable(shift) + '\n';
   const auto& given = std::get<FieldSequence>(input.data);
   warn_of_lost_expressions(invocation, *given.frames, KeptInScenes::no);
-  FieldSequence made = held_like(
-      given, result.frames,
-      {.threads = invocation.threads, .progress = part_of(invocation.progress, kFittingTo, 1)});
+  FieldSequence made =
+      held_like(given, result.frames, invocation.context.part(kFittingTo, 1).without_ranks());
   made.fields = given.fields;
   outcome.outputs["out"].push_back({"", std::move(made), input.origin});
   return outcome;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -13,6 +14,8 @@
 #include "toolkit/operations/parameter.h"
 
 namespace mimetra {
+
+struct FieldSequence;
 
 /// How a member of an option struct is a parameter: its kind, the `value` that it has as one, and
 /// `read`, which gives the value of a call. A type without a kind is no parameter's.
@@ -127,8 +130,9 @@ struct ParameterType<std::optional<Value>> {
 template <typename Options>
 class BoundParameters {
  public:
-  /// How a parameter's value comes into the struct.
-  using Apply = std::function<void(const Parameters&, Options&)>;
+  /// How a parameter's value comes into the struct, where files that it names must fit a sequence;
+  /// without one they are not read, and what they hold is empty.
+  using Apply = std::function<void(const Parameters&, Options&, const FieldSequence*)>;
   struct Entry {
     Parameter parameter;
     Apply apply;
@@ -162,21 +166,22 @@ class BoundParameters {
   /// One of the values of an enum, or a file, of which `read` makes a value. The member is a
   /// variant of both, or an optional one.
   template <NamedChoice Word, typename Value, typename Member>
-  BoundParameters& add_word_or_file(const std::string& name, const Option<Options, Member>& option,
-                                    std::string help,
-                                    std::function<Value(const std::string&)> read) {
+  BoundParameters& add_word_or_file(
+      const std::string& name, const Option<Options, Member>& option, std::string help,
+      std::function<Value(const std::string&, const FieldSequence*)> read) {
     Parameter parameter =
         file_parameter<Word>(name, word_of<Word>(defaults_.*option.member), std::move(help));
-    return add(std::move(parameter), [name, member = option.member, read = std::move(read)](
-                                         const Parameters& parameters, Options& options) {
-      const auto text = parameters.optional_text(name);
-      if (!text) return;
-      if (const auto word = choice_of<Word>(*text)) {
-        options.*member = *word;
-      } else {
-        options.*member = read(*text);
-      }
-    });
+    return add(std::move(parameter),
+               [name, member = option.member, read = std::move(read)](
+                   const Parameters& parameters, Options& options, const FieldSequence* sequence) {
+                 const auto text = parameters.optional_text(name);
+                 if (!text) return;
+                 if (const auto word = choice_of<Word>(*text)) {
+                   options.*member = *word;
+                 } else {
+                   options.*member = read(*text, sequence);
+                 }
+               });
   }
 
   /// The parameters of a part of the struct, in their order.
@@ -184,8 +189,9 @@ class BoundParameters {
   BoundParameters& add(Part Options::*member, const BoundParameters<Part>& part) {
     for (const auto& entry : part.entries()) {
       add(entry.parameter,
-          [member, apply = entry.apply](const Parameters& parameters, Options& options) {
-            apply(parameters, options.*member);
+          [member, apply = entry.apply](const Parameters& parameters, Options& options,
+                                        const FieldSequence* sequence) {
+            apply(parameters, options.*member, sequence);
           });
     }
     return *this;
@@ -197,9 +203,17 @@ class BoundParameters {
     return *this;
   }
 
-  /// A parameter that is not like its member; `apply` reads it.
-  BoundParameters& add(Parameter parameter, Apply apply) {
-    entries_.push_back({std::move(parameter), std::move(apply)});
+  /// A parameter that is not like its member. `apply` reads it, and may leave out the sequence.
+  template <typename Function>
+  BoundParameters& add(Parameter parameter, Function apply) {
+    if constexpr (std::is_convertible_v<Function, Apply>) {
+      entries_.push_back({std::move(parameter), std::move(apply)});
+    } else {
+      entries_.push_back(
+          {std::move(parameter),
+           [apply = std::move(apply)](const Parameters& parameters, Options& options,
+                                      const FieldSequence*) { apply(parameters, options); }});
+    }
     return *this;
   }
 
@@ -223,10 +237,10 @@ class BoundParameters {
     return parameters;
   }
 
-  /// The struct with the values of a call.
-  Options read(const Parameters& parameters) const {
+  /// The struct with the values of a call, as Apply.
+  Options read(const Parameters& parameters, const FieldSequence* sequence = nullptr) const {
     Options options = defaults_;
-    for (const Entry& entry : entries_) entry.apply(parameters, options);
+    for (const Entry& entry : entries_) entry.apply(parameters, options, sequence);
     return options;
   }
 

@@ -7,6 +7,7 @@
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/suggestion.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/command_terms.h"
 #include "toolkit/operations/input_files.h"
 #include "toolkit/operations/loading.h"
 #include "toolkit/operations/memory_use.h"
@@ -77,12 +78,13 @@ void check_kind(const Operation& operation, const Input& input, const Data& data
 Call::Call(const OperationTable& table, CallRequest request)
     : table_(table), request_(std::move(request)) {
   check_inputs();
+  check_exclusions();
   check_parameters_of_files();
   check_outputs();
 }
 
 bool Call::helps_another() const {
-  return request_.ranks && request_.ranks->rank() > 0;
+  return request_.context.ranks().rank() > 0;
 }
 
 std::optional<Destination> Call::destination_of(const Output& output) const {
@@ -107,6 +109,15 @@ void Call::check_inputs() const {
     throw UsageError("operation '" + request_.operation->name + "' needs its input '" + input.name +
                      "': " + input.help);
   }
+}
+
+void Call::check_exclusions() const {
+  const auto has_value = [this](const std::string& name) {
+    return request_.given.contains(name) || request_.named.contains(name) ||
+           request_.wanted.contains(name) || request_.destinations.contains(name);
+  };
+  const auto found = refusal(request_.operation->exclusions, request_.parameters, has_value);
+  if (found) throw UsageError(*found);
 }
 
 /// They would be ignored.
@@ -248,10 +259,9 @@ void Call::load() {
     }
   }
   request_.given.clear();
-  LoadedInputs loaded =
-      load_inputs(table_, *request_.operation, request_.parameters, request_.named,
-                  part_of(request_.progress, 0, read_until), request_.log, request_.threads,
-                  std::move(given), request_.may_stream);
+  LoadedInputs loaded = load_inputs(
+      table_, *request_.operation, request_.parameters, request_.named, request_.log,
+      std::move(given), request_.may_stream, request_.context.part(0, read_until).without_ranks());
   finished_.inputs = std::move(loaded.files);
   for (const std::filesystem::path file : request_.parameters.files()) {
     request_.files.push_back(file);
@@ -269,10 +279,10 @@ void Call::load() {
   for (const Output& output : request_.operation->outputs) {
     if (!output.optional) want(output.name);
   }
-  invocation_.progress = part_of(request_.progress, read_until, write_from);
   invocation_.log = request_.log;
-  invocation_.threads = request_.threads;
-  invocation_.ranks = request_.ranks;
+  invocation_.context = request_.context.part(read_until, write_from);
+  if (!request_.operation->shared) invocation_.context = invocation_.context.without_ranks();
+  invocation_.context = with_notes_as_warnings(invocation_);
   invocation_.landmark_finder = table_.landmark_finder();
   finished_.read_seconds = stopwatch.seconds();
 }
@@ -306,9 +316,7 @@ void Call::give(const std::string& input, NamedData data) {
 
 const Outcome& Call::run() {
   const Stopwatch stopwatch;
-  if (request_.ranks && request_.operation->shared) {
-    check_same_inputs(finished_.inputs, *request_.ranks);
-  }
+  check_same_inputs(finished_.inputs, invocation_.context);
   reading_files(request_, [this] { outcome_ = request_.operation->run(invocation_); });
   finished_.run_seconds = stopwatch.seconds();
   for (const auto& [name, targets] : paths_) {
@@ -319,19 +327,17 @@ const Outcome& Call::run() {
 }
 
 void Call::write_values(const Output& output, const Paths& targets, const std::string& manifest,
-                        const Progress& progress, PendingOutputs& together,
-                        std::size_t& written) const {
+                        PendingOutputs& together, const Context& context) const {
   const auto made = outcome_.outputs.find(output.name);
   if (made == outcome_.outputs.end()) return;
+  const double count = static_cast<double>(made->second.size());
   const Destination asked = *destination_of(output);
   const Format& format = table_.writer(output, asked.path);
   const bool is_folder = format.has(Format::kFolder);
-  for (std::size_t i = 0; i < made->second.size(); ++i, ++written) {
+  for (std::size_t i = 0; i < made->second.size(); ++i) {
     const auto& target = targets.at(i);
     // With a slash at its end a folder's name may have a dot.
-    WriteRequest write{is_folder ? target / "" : target, request_.parameters, asked.overwrite,
-                       progress};
-    write.threads = request_.threads;
+    WriteRequest write{is_folder ? target / "" : target, request_.parameters, asked.overwrite};
     write.inputs = inputs_that_stay();
     write.together = &together;
     // What accompanies another output stands in that one's manifest.
@@ -343,10 +349,12 @@ void Call::write_values(const Output& output, const Paths& targets, const std::s
       write.extra.emplace_back(name, text);
     }
     const NamedData& value = made->second[i];
+    const double done = static_cast<double>(i);
+    const Context of_value = context.part(done / count, (done + 1) / count);
     if (format.fields && !value.more_fields.empty()) {
-      format.write(with_more_fields(value), write);
+      format.write(with_more_fields(value), write, of_value);
     } else {
-      format.write(value.data, write);
+      format.write(value.data, write, of_value);
     }
     for (const std::string& note : notes_on_losses(format, value.data, write)) {
       if (request_.log) request_.log(LogLevel::warning, note);
@@ -360,27 +368,26 @@ void Call::write() {
   PendingOutputs together(false, inputs_that_stay());
   if ((writes() || request_.manifest) && !helps_another()) write_outputs(together);
   // Nothing stands of a run that another process could not finish.
-  if (request_.ranks && request_.operation->shared) {
-    request_.ranks->meet([this] { return !request_.progress || request_.progress(1); });
-  }
+  invocation_.context.ranks().meet([this] {
+    request_.context.report(1);
+    return true;
+  });
   together.commit();
   write_seconds_ = stopwatch.seconds();
 }
 
 void Call::write_outputs(PendingOutputs& together) const {
   const std::string manifest = mimetra::manifest(finished_, outcome_.report);
-  std::size_t count = 0, written = 0;
-  for (const auto& [name, targets] : paths_) count += targets.size();
-  const Progress progress = [&](double share) {
-    const double done = (static_cast<double>(written) + share) / static_cast<double>(count);
-    const double all = 1 - kWritingShare + kWritingShare * done;
-    return !request_.progress || request_.progress(all);
-  };
+  const Context writing = request_.context.part(1 - kWritingShare, 1).without_ranks();
+  double count = 0, written = 0;
+  for (const auto& [name, targets] : paths_) count += static_cast<double>(targets.size());
   for (const Output& output : request_.operation->outputs) {
     const auto targets = paths_.find(output.name);
-    if (targets != paths_.end()) {
-      write_values(output, targets->second, manifest, progress, together, written);
-    }
+    if (targets == paths_.end()) continue;
+    const double until = written + static_cast<double>(targets->second.size());
+    write_values(output, targets->second, manifest, together,
+                 writing.part(written / count, until / count));
+    written = until;
   }
   if (request_.manifest) {
     write_file(request_.manifest->path, manifest, request_.manifest->overwrite, &together);

@@ -38,11 +38,8 @@ struct CallRequest {
   std::optional<Destination> manifest = {};
   /// Frames of streamed inputs may be read when they are needed; otherwise all are in memory.
   bool may_stream = false;
-  /// 0 for all there are.
-  int threads = 0;
-  /// Of a program that several processes run, all of which make this call: the first one writes.
-  const Ranks* ranks = nullptr;
-  Progress progress = {};
+  /// Several ranks all make this call, and the first one writes. Notes go to the log, as warnings.
+  Context context = {};
   Log log = {};
   /// For the manifest: the command line, and files that were read for it besides the inputs.
   std::vector<std::string> arguments = {};
@@ -57,9 +54,9 @@ void check_kind(const Operation& operation, const Input& input, const Data& data
 /// this order.
 class Call {
  public:
-  /// Throws UsageError for an input that is missing or of another kind, for a parameter of files
-  /// that applies to none, and for an output that no writer takes; OutputError for one that cannot
-  /// be written. Nothing is read yet.
+  /// Throws UsageError for an input that is missing or of another kind, for options that
+  /// exclude each other, for a parameter of files that applies to none, and for an output that no
+  /// writer takes; OutputError for one that cannot be written. Nothing is read yet.
   Call(const OperationTable& table, CallRequest request);
 
   /// Reads the inputs. Throws what the readers throw, and UsageError where two outputs would be
@@ -94,6 +91,7 @@ class Call {
   bool helps_another() const;
   std::optional<Destination> destination_of(const Output& output) const;
   void check_inputs() const;
+  void check_exclusions() const;
   void check_parameters_of_files() const;
   void check_outputs() const;
   void check_manifest() const;
@@ -102,7 +100,7 @@ class Call {
   void place_outputs();
   void write_outputs(PendingOutputs& together) const;
   void write_values(const Output& output, const Paths& targets, const std::string& manifest,
-                    const Progress& progress, PendingOutputs& together, std::size_t& written) const;
+                    PendingOutputs& together, const Context& context) const;
 
   const OperationTable& table_;
   CallRequest request_;

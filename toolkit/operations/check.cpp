@@ -39,9 +39,9 @@ std::string from(const std::vector<int>& found, const std::string& what) {
 
 /// Reads all frames.
 std::vector<std::string> frame_warnings(const std::shared_ptr<const FrameSource>& frames,
-                                        const BlockOptions& options) {
+                                        const Context& context) {
   const FrameSource& sequence = *frames;
-  const std::vector<FrameShape> shapes = frame_shapes(sequence, options);
+  const std::vector<FrameShape> shapes = frame_shapes(sequence, context);
   const OddFrames odd = odd_frames(sequence, shapes);
   std::vector<std::string> warnings;
   const double least = kLeastMotion * sequence.diameter();
@@ -53,7 +53,7 @@ std::vector<std::string> frame_warnings(const std::shared_ptr<const FrameSource>
   }
   for (std::string& text : described(odd, shapes)) warnings.push_back(std::move(text));
   const WholeMotion whole =
-      sequence.rest_is_known() ? whole_motion(sequence, options) : WholeMotion();
+      sequence.rest_is_known() ? whole_motion(sequence, context) : WholeMotion();
   if (whole.is_scaled()) {
     warnings.push_back("frames are " + readable(whole.scale, 3) +
                        " times as large as the rest pose");
@@ -63,7 +63,7 @@ std::vector<std::string> frame_warnings(const std::shared_ptr<const FrameSource>
                        " against the rest pose, " + percent(1 - whole.left_by_motion) +
                        " of all motion");
   } else if (sequence.rest_is_known()) {
-    const RestBeyondFrames rest = rest_beyond_frames(frames, options);
+    const RestBeyondFrames rest = rest_beyond_frames(frames, context);
     if (rest.is_of_other_face()) warnings.push_back(described(rest));
   }
   const double of_rest = spread(sequence.rest(), sequence.triangles());
@@ -126,8 +126,7 @@ Outcome run_check(const Invocation& invocation) {
   std::vector<std::string> found = numbering_warnings(invocation);
   const std::vector<std::string> own = mesh_warnings(sequence);
   found.insert(found.end(), own.begin(), own.end());
-  const std::vector<std::string> of_frames =
-      frame_warnings(frames, {.threads = invocation.threads, .progress = invocation.progress});
+  const std::vector<std::string> of_frames = frame_warnings(frames, invocation.context);
   found.insert(found.end(), of_frames.begin(), of_frames.end());
   // What reading said is not said again.
   std::vector<std::string> warnings = input.origin.notes;

@@ -114,10 +114,11 @@ std::string in_command_terms(Topic topic, const std::string& text, const Paramet
 
 }  // namespace
 
-Notes warnings_of(const Invocation& invocation) {
-  return [&invocation](const Note& note) {
-    invocation.warn(in_command_terms(note.topic, note.text, invocation.parameters));
-  };
+Context with_notes_as_warnings(const Invocation& invocation) {
+  return invocation.context.with_notes(
+      [parameters = invocation.parameters, log = invocation.log](const Note& note) {
+        if (log) log(LogLevel::warning, in_command_terms(note.topic, note.text, parameters));
+      });
 }
 
 void refuse(const OptionError& error, const Parameters& parameters) {

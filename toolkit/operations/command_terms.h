@@ -1,14 +1,15 @@
 #pragma once
 
+#include "toolkit/mesh/note.h"
 #include "toolkit/operations/operation.h"
-#include "toolkit/pipeline/note.h"
 
 namespace mimetra {
 
 // What the pipeline says, in the words of the command's options.
 
-/// Notes become warnings that name the options which help.
-Notes warnings_of(const Invocation& invocation);
+/// The invocation's context, whose notes become warnings that name the options which help. It keeps
+/// copies of the parameters and of the log: set these first.
+Context with_notes_as_warnings(const Invocation& invocation);
 
 /// Throws what the command says where an option does not fit: UsageError, MismatchError.
 [[noreturn]] void refuse(const OptionError& error, const Parameters& parameters);

@@ -72,7 +72,7 @@ FieldSequence matched(const Invocation& invocation, const NamedData& input,
   const auto& reference = *invocation.get<FieldSequence>("match").frames;
   FieldSequence made =
       held_like(given, on_mesh(given.frames, reference.shared_connectivity(), found.vertices),
-                {.threads = invocation.threads, .progress = invocation.progress});
+                invocation.context.without_ranks());
   const std::string& name = invocation.input("match").name;
   if (const auto lost = parts_of_faces(given.frames->connectivity(), reference.connectivity());
       !lost.empty()) {
@@ -125,16 +125,13 @@ void check_weights(const Invocation& invocation, const FrameSource& frames) {
   check_live_link(invocation, "out", animation->model().expressions().names);
 }
 
-bool is_shared(const Invocation& invocation) {
-  return invocation.ranks && invocation.ranks->count() > 1;
-}
-
 /// Frames that several processes read for the first one, which writes them.
-std::shared_ptr<const FrameSource> read_by_all(const Invocation& invocation,
-                                               std::shared_ptr<const FrameSource> frames) {
-  const BlockOptions options{invocation.threads, invocation.progress, invocation.ranks};
-  if (invocation.ranks->rank() == 0) return stored(std::move(frames), options);
-  if (!frames->is_quick()) for_each_block(*frames, options, [](int, const Frames&) {});
+std::shared_ptr<const FrameSource> read_by_all(std::shared_ptr<const FrameSource> frames,
+                                               const Context& context) {
+  if (context.ranks().rank() == 0) return stored(std::move(frames), context);
+  if (!frames->is_quick())
+    for_each_block(
+        *frames, [](int, const Frames&) {}, context);
   return frames;
 }
 
@@ -147,11 +144,12 @@ Outcome run_convert(const Invocation& invocation) {
   const UnitChange change = convert_parameters().read(invocation.parameters);
   FieldSequence made = given;
   if (const auto frames = in_units(given.frames, change); frames != given.frames) {
-    made =
-        held_like(given, frames, {.threads = invocation.threads, .progress = invocation.progress});
+    made = held_like(given, frames, invocation.context.without_ranks());
     made.fields = given.fields;
   }
-  if (is_shared(invocation)) made.frames = read_by_all(invocation, made.frames);
+  if (invocation.context.ranks().count() > 1) {
+    made.frames = read_by_all(made.frames, invocation.context);
+  }
   warn_of_lost_expressions(invocation, *made.frames, KeptInScenes::yes);
   Outcome outcome;
   Json report = Json{{"frames", made.frames->frames()},
@@ -196,7 +194,8 @@ Operation convert_operation() {
   operation.shared = true;
   operation.scratch = [](const Invocation& invocation) {
     const FrameSource& frames = *invocation.get<FieldSequence>("sequence").frames;
-    return is_shared(invocation) && !frames.is_quick() ? frame_bytes(frames) : 0;
+    const bool is_shared = invocation.context.ranks().count() > 1;
+    return is_shared && !frames.is_quick() ? frame_bytes(frames) : 0;
   };
   return operation;
 }

@@ -16,17 +16,18 @@ namespace mimetra {
 namespace {
 
 struct DecomposeCall {
-  AnalysisOptions analysis = {.decomposition = {}};
+  AnalysisOptions analysis = {.count = DecompositionOptions().count};
   SourceOptions source = {};
 };
 
-BoundParameters<DecomposeCall> decompose_parameters(const FieldSequence* fields = nullptr) {
-  const FrameSource* sequence = fields ? fields->frames.get() : nullptr;
-  BoundParameters<DecomposeCall> list;
-  return list.add(&DecomposeCall::analysis, count_parameters(DecomposeCall{}.analysis))
-      .add(&DecomposeCall::analysis, analysis_parameters(fields))
-      .add(&DecomposeCall::source, rest_parameters(sequence))
-      .add(&DecomposeCall::source, alignment_parameters(sequence));
+const BoundParameters<DecomposeCall>& decompose_parameters() {
+  static const auto list =
+      BoundParameters<DecomposeCall>()
+          .add(&DecomposeCall::analysis, count_parameters(DecomposeCall{}.analysis))
+          .add(&DecomposeCall::analysis, analysis_parameters())
+          .add(&DecomposeCall::source, rest_parameters())
+          .add(&DecomposeCall::source, alignment_parameters());
+  return list;
 }
 
 /// Each component's weight over time.
@@ -71,25 +72,17 @@ std::shared_ptr<const FrameSource> moving_inside(std::shared_ptr<const FrameSour
 
 Outcome run_decompose(const Invocation& invocation) {
   const FieldSequence& sequence = invocation.get<FieldSequence>("sequence");
-  DecomposeCall call = decompose_parameters(&sequence).read(invocation.parameters);
-  call.analysis.threads = invocation.threads;
-  call.analysis.ranks = invocation.ranks;
-  call.analysis.progress = invocation.progress;
-  call.analysis.notes = warnings_of(invocation);
+  DecomposeCall call = decompose_parameters().read(invocation.parameters, &sequence);
   call.source = described(std::move(call.source), invocation.input("sequence"));
-  call.source.notes = call.analysis.notes;
-  call.source.threads = invocation.threads;
-  call.source.ranks = invocation.ranks;
+  const Context context = within_memory(invocation);
   auto [still, analysis] = in_command_terms(invocation.parameters, [&] {
-    Source source = prepare_source(sequence.frames, call.source);
-    Analysis found = analyse(source, call.analysis);
+    Source source = prepare_source(sequence.frames, call.source, {}, context.part(0, 0));
+    Analysis found = analyse(source, call.analysis, context);
     return std::pair(std::move(source), std::move(found));
   });
   const Components& components = analysis.components;
   const auto moving = moving_inside(with_rest(still.sequence, components.rest), analysis.inside);
-  const DecompositionError error = invocation.ranks
-                                       ? decomposition_error(*moving, components, *invocation.ranks)
-                                       : decomposition_error(*moving, components);
+  const DecompositionError error = decomposition_error(*moving, components, context.part(1, 1));
   const auto dead = std::ranges::count(components.centers, -1);
   if (dead > 0) {
     invocation.warn(std::to_string(dead) + " of " + std::to_string(components.count()) +
@@ -146,7 +139,7 @@ Operation decompose_operation() {
   operation.shared = true;
   const auto plan = [](const Invocation& invocation) {
     return analysis_plan(invocation, *invocation.get<FieldSequence>("sequence").frames,
-                         invocation.parameters.integer("k"));
+                         decompose_parameters().read(invocation.parameters).analysis);
   };
   operation.memory = [plan](const Invocation& invocation) { return plan(invocation).bytes; };
   operation.scratch = [plan](const Invocation& invocation) {

@@ -19,23 +19,42 @@ namespace mimetra {
 
 namespace {
 
-BoundParameters<EvaluationOptions> evaluation_parameters(const FieldSequence* source = nullptr) {
+const BoundParameters<EvaluationOptions>& evaluation_parameters() {
   using Options = EvaluationOptions;
-  const FrameSource* sequence = source ? source->frames.get() : nullptr;
-  BoundParameters<Options> list;
-  return list
-      .add("k", Options::kCounts,
-           "numbers of components, one row each; with --select transfer of discs at most")
-      .add(&Options::regions, region_parameters())
-      .add(&Options::regions, completion_parameters())
-      .add("curve", Options::kCurve,
-           "rows at a tenth to eight of the triangles instead, by energy and for the transfer; -o "
-           "NAME.png draws them")
-      .add(&Options::analysis, analysis_rest_parameters(sequence))
-      .add(&Options::analysis, analysis_parameters(source))
-      .add(&Options::source, alignment_parameters(sequence))
-      .add(&Options::source, source_rest_parameters(sequence))
-      .add(&Options::solving, solving_parameters());
+  static const auto list =
+      BoundParameters<Options>()
+          .add("k", Options::kCounts,
+               "numbers of components, one row each; with --select transfer of discs at most")
+          .add(&Options::regions, region_parameters())
+          .add(&Options::regions, completion_parameters())
+          .add("curve", Options::kCurve,
+               "rows at a tenth to eight of the triangles instead, by energy and for the transfer; "
+               "-o NAME.png draws them")
+          .add(&Options::analysis, analysis_rest_parameters())
+          .add(&Options::analysis, analysis_parameters())
+          .add(&Options::source, alignment_parameters())
+          .add(&Options::source, source_rest_parameters())
+          .add(&Options::solve, solving_parameters());
+  return list;
+}
+
+std::vector<Exclusion> evaluation_exclusions() {
+  return concatenated<Exclusion>(
+      {paint_exclusions(),
+       {{{"select", "triangles", "k", "coverage"},
+         {"curve"},
+         "--curve has rows by energy and for the transfer, at shares of its own"},
+        {{"falloff"},
+         {"curve !per-region"},
+         "--curve has rows at shares of the triangles, and for a transfer that moves the whole "
+         "face; a border holds more, and moves the regions only"},
+        {{"curve"},
+         {"space=vertex"},
+         "regions are chosen for a transfer by what they tell of expressions, which --space vertex "
+         "does not solve for"}},
+       selection_exclusions(),
+       solving_exclusions(),
+       pairing_exclusions()});
 }
 
 std::string text_of(const std::vector<EvaluationRow>& rows) {
@@ -67,46 +86,20 @@ std::string text_of(const std::vector<EvaluationRow>& rows) {
   return text;
 }
 
-/// Options that the others leave without an effect.
-void check_rows(const Invocation& invocation) {
-  check_paint(invocation);
-  if (invocation.parameters.flag("curve")) {
-    refuse_options(invocation.parameters, {"select", "triangles", "k", "coverage"},
-                   "--curve has rows by energy and for the transfer, at shares of its own");
-    if (!invocation.parameters.flag("per-region")) {
-      refuse_options(invocation.parameters, {"falloff"},
-                     "--curve has rows at shares of the triangles, and for a transfer that moves "
-                     "the whole face; a border holds more, and moves the regions only");
-    }
-  }
-  check_selection(invocation);
-  if (invocation.parameters.flag("curve") &&
-      invocation.parameters.choice<Space>("space") == Space::vertex) {
-    throw UsageError(
-        "--curve: regions are chosen for a transfer by what they tell of expressions, which "
-        "--space vertex does not solve for");
-  }
-}
-
 Outcome run_evaluate(const Invocation& invocation) {
-  check_rows(invocation);
   check_solving(invocation);
   const FrameSource& sequence = *invocation.get<FieldSequence>("source").frames;
   warn_of_guessed_rate(invocation, invocation.input("source").name, sequence.times_are_known());
   EvaluationOptions options =
-      evaluation_parameters(&invocation.get<FieldSequence>("source")).read(invocation.parameters);
+      evaluation_parameters().read(invocation.parameters, &invocation.get<FieldSequence>("source"));
   options.source = described(options.source, invocation.input("source"));
   if (options.regions.select == Selector::transfer && !invocation.parameters.is_set("k")) {
     options.counts = {};
   }
-  set_usual_border(invocation, options.solving);
+  set_usual_border(invocation, options.solve);
   options.given = painted_region_of(invocation);
-  options.threads = invocation.threads;
-  options.ranks = invocation.ranks;
-  options.progress = invocation.progress;
-  options.notes = warnings_of(invocation);
   const std::vector<EvaluationRow> rows = in_command_terms(invocation.parameters, [&] {
-    return evaluate(sequence, targets_of(invocation).front(), options);
+    return evaluate(sequence, targets_of(invocation).front(), options, within_memory(invocation));
   });
   const Table table = table_of(rows);
   Outcome outcome;
@@ -122,30 +115,31 @@ int most_components(const EvaluationOptions& options) {
 }
 
 /// Of the largest decomposition; nothing where there is none.
-DecompositionPlan plan_of_evaluation(const Invocation& invocation) {
-  const EvaluationOptions options = evaluation_parameters().read(invocation.parameters);
+DecompositionPlan plan_of_evaluation(const Invocation& invocation,
+                                     const EvaluationOptions& options) {
   if (options.regions.select == Selector::transfer ||
       invocation.parameters.optional_text("paint")) {
     return {};
   }
-  return analysis_plan(invocation, *invocation.get<FieldSequence>("source").frames,
-                       most_components(options));
+  AnalysisOptions analysis = options.analysis;
+  analysis.count = most_components(options);
+  return analysis_plan(invocation, *invocation.get<FieldSequence>("source").frames, analysis);
 }
 
 /// One decomposition after the other, each followed by a transfer.
 double memory_of_evaluate(const Invocation& invocation) {
   const FrameSource& sequence = *invocation.get<FieldSequence>("source").frames;
-  EvaluationOptions options = evaluation_parameters().read(invocation.parameters);
-  options.solving.threads = invocation.threads;
+  const EvaluationOptions options = evaluation_parameters().read(invocation.parameters);
+  const Context& context = invocation.context;
   const BlendshapeModel& target = invocation.get<ModelData>("target").model.average();
   const bool selects = options.regions.select == Selector::transfer;
   const int most = most_components(options);
   const double selection = selects || options.curve ? selection_bytes(sequence, target) : 0;
   const double regional =
-      options.solving.per_region ? regional_bytes(sequence, target, most, options.solving) : 0;
-  return std::max(
-      {plan_of_evaluation(invocation).bytes, selection,
-       stored_bytes(sequence) + 2 * solution_bytes(sequence, target, options.solving) + regional});
+      options.solve.per_region ? regional_bytes(sequence, target, most, context) : 0;
+  return std::max({plan_of_evaluation(invocation, options).bytes, selection,
+                   stored_bytes(sequence) +
+                       2 * solution_bytes(sequence, target, options.solve, context) + regional});
 }
 
 }  // namespace
@@ -159,10 +153,9 @@ Operation evaluate_operation() {
       {"target", DataKind::model, "model (MODEL@identity=1.5) or mesh that receives it"}};
   operation.inputs.front().streamed = operation.inputs.front().fields = true;
   operation.outputs = {{"out", DataKind::table, "the table", true}};
-  operation.parameters = evaluation_parameters().declared();
-  operation.parameters.push_back(paint_parameter());
-  const std::vector<Parameter> matching = match_parameters();
-  operation.parameters.insert(operation.parameters.end(), matching.begin(), matching.end());
+  operation.parameters = concatenated<Parameter>(
+      {evaluation_parameters().declared(), {paint_parameter()}, match_parameters()});
+  operation.exclusions = evaluation_exclusions();
   operation.examples = {"evaluate take.npy actor/ -k 10,30,40",
                         "evaluate takes/ actor@identity007=2 -k 10,20,30,40,50 -o table.csv"};
   operation.measures = evaluation_measures();
@@ -170,16 +163,16 @@ Operation evaluate_operation() {
   operation.shared = true;
   operation.memory = memory_of_evaluate;
   operation.scratch = [](const Invocation& invocation) {
-    return plan_of_evaluation(invocation).scratch_bytes;
+    const EvaluationOptions options = evaluation_parameters().read(invocation.parameters);
+    return plan_of_evaluation(invocation, options).scratch_bytes;
   };
   operation.foresee = [](const Invocation& invocation) {
-    check_rows(invocation);
     check_solving(invocation);
-    const EvaluationOptions options =
-        evaluation_parameters(&invocation.get<FieldSequence>("source")).read(invocation.parameters);
+    const FieldSequence& source = invocation.get<FieldSequence>("source");
+    const EvaluationOptions options = evaluation_parameters().read(invocation.parameters, &source);
     const auto painted = painted_region_of(invocation);
-    check_border(invocation, painted ? &*painted : nullptr, options.solving);
-    check_targets(invocation);
+    check_border(invocation, painted ? &*painted : nullptr, options.solve);
+    check_targets(invocation, targets_of(invocation), *source.frames, options.solve);
   };
   return operation;
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "toolkit/io/held_parts.h"
-#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/operations/data.h"
 #include "toolkit/operations/parameter.h"
 
@@ -27,8 +27,6 @@ struct ReadRequest {
   /// The mesh that a region set is for.
   int vertices = 0;
   const Triangles* triangles = nullptr;
-  Progress progress = {};
-  int threads = 0;  ///< 0 for all there are; what is read does not depend on it
 };
 
 /// A value, and what was noticed while reading it.
@@ -44,14 +42,12 @@ struct WriteRequest {
   std::filesystem::path target;
   const Parameters& parameters;
   bool overwrite = false;
-  Progress progress = {};
   /// Files and folders that were read for it, which must stay.
   std::vector<std::filesystem::path> inputs = {};
   /// Outputs that it appears together with; alone without.
   PendingOutputs* together = nullptr;
   /// Further files (name, content) that appear together with the output.
   std::vector<std::pair<std::string, std::string>> extra = {};
-  int threads = 0;  ///< 0 for all there are; what is written does not depend on it
 };
 
 /// A way to read and to write one kind of value, declared once: what is read and written, and every
@@ -68,12 +64,14 @@ struct Format {
   /// Options of reading.
   std::vector<Parameter> reading = {};
   /// Throws IoError, MismatchError, Cancelled; not set where it is not read.
-  std::function<ReadValue(const std::string& text, const ReadRequest&)> read = {};
+  std::function<ReadValue(const std::string& text, const ReadRequest&, const Context&)> read = {};
   /// Options of writing.
   std::vector<Parameter> writing = {};
   /// Writes atomically; returns the files. Throws OutputError, MismatchError, Cancelled; not set
   /// where it is not written.
-  std::function<std::vector<std::filesystem::path>(const Data&, const WriteRequest&)> write = {};
+  std::function<std::vector<std::filesystem::path>(const Data&, const WriteRequest&,
+                                                   const Context&)>
+      write = {};
   /// A sequence keeps its fields.
   bool fields = false;
   /// Displacements from a rest pose take the place of fields of their names: show_displacement().

@@ -33,14 +33,13 @@ void check_shown(const FieldSequence& regions, const std::filesystem::path& targ
                       ": the regions come without a mesh to show them on; write .json or .csv");
 }
 
-ReadValue read_sequence_data(const std::string& text, const ReadRequest& request) {
-  SequenceSource source = sequence_parameters().read(request.parameters);
-  source.threads = request.threads;
-  source.progress = request.progress;
+ReadValue read_sequence_data(const std::string& text, const ReadRequest& request,
+                             const Context& context) {
+  const SequenceSource source = sequence_parameters().read(request.parameters);
   const auto value_of = [&](FieldSequence sequence, auto& read) -> ReadValue {
     const SequenceFormat* format = sequence_format(text);
     if (request.fields && format && format->fields && std::filesystem::is_regular_file(text)) {
-      FieldsRead own = format->fields(text, sequence.frames->connectivity());
+      FieldsRead own = format->fields(text, sequence.frames->connectivity(), context.part(1, 1));
       sequence.fields = std::move(own.fields);
       if (!own.left_out.empty()) {
         read.notes.push_back(text + ": its properties " + listed(own.left_out) +
@@ -52,63 +51,64 @@ ReadValue read_sequence_data(const std::string& text, const ReadRequest& request
             std::move(read.notes)};
   };
   if (request.may_stream) {
-    OpenSequence open = open_sequence(text, source);
+    OpenSequence open = open_sequence(text, source, context);
     return value_of(FieldSequence(std::move(open.frames)), open);
   }
-  SequenceRead read = read_sequence(text, source);
+  SequenceRead read = read_sequence(text, source, context);
   return value_of(FieldSequence(std::move(read.sequence)), read);
 }
 
-Paths write_sequence_data(const Data& data, const WriteRequest& request,
-                          SequenceWriteOptions options) {
+/// `options` with the files of a request.
+SequenceWriteOptions asked_for(const WriteRequest& request, SequenceWriteOptions options) {
   options.overwrite = request.overwrite;
   options.inputs = request.inputs;
   options.together = request.together;
-  options.threads = request.threads;
-  options.progress = request.progress;
+  return options;
+}
+
+Paths write_sequence_data(const Data& data, const WriteRequest& request,
+                          SequenceWriteOptions options, const Context& context) {
   const auto& sequence = std::get<FieldSequence>(data);
   options.fields = sequence.fields;
-  return write_sequence(*sequence.frames, request.target, options, request.extra);
+  return write_sequence(*sequence.frames, request.target, asked_for(request, std::move(options)),
+                        request.extra, context);
 }
 
 /// The rest pose with the fields, as one mesh.
-Paths write_om_regions(const Data& data, const WriteRequest& request) {
+Paths write_om_regions(const Data& data, const WriteRequest& request, const Context& context) {
   const FieldSequence& shown = std::get<RegionData>(data).fields;
   check_shown(shown, request.target);
   const FrameSource& frames = *shown.frames;
   const Frames rest = frames.rest().reshaped<Eigen::RowMajor>().transpose();
   return write_sequence_data(
       FieldSequence(MeshSequence(frames.shared_connectivity(), rest), shown.fields), request,
-      mesh_writing_parameters().read(request.parameters));
+      mesh_writing_parameters().read(request.parameters), context);
 }
 
-SequenceWriteOptions vtkhdf_options(const WriteRequest& request) {
-  SequenceWriteOptions options = mesh_writing_parameters().read(request.parameters);
-  options.overwrite = request.overwrite;
-  options.inputs = request.inputs;
-  options.together = request.together;
-  options.threads = request.threads;
-  options.progress = request.progress;
-  return options;
+Paths write_vtkhdf_data(const FieldSequence& sequence, const WriteRequest& request,
+                        const Context& context) {
+  return write_vtkhdf(sequence, request.target,
+                      asked_for(request, mesh_writing_parameters().read(request.parameters)),
+                      request.extra, context);
 }
 
-Paths write_vtkhdf_sequence(const Data& data, const WriteRequest& request) {
+Paths write_vtkhdf_sequence(const Data& data, const WriteRequest& request, const Context& context) {
   FieldSequence sequence = std::get<FieldSequence>(data);
   show_displacement(sequence);
-  return write_vtkhdf(sequence, request.target, vtkhdf_options(request), request.extra);
+  return write_vtkhdf_data(sequence, request, context);
 }
 
-Paths write_vtkhdf_regions(const Data& data, const WriteRequest& request) {
+Paths write_vtkhdf_regions(const Data& data, const WriteRequest& request, const Context& context) {
   const FieldSequence& shown = std::get<RegionData>(data).fields;
   check_shown(shown, request.target);
-  return write_vtkhdf(shown, request.target, vtkhdf_options(request), request.extra);
+  return write_vtkhdf_data(shown, request, context);
 }
 
-ReadValue read_components_data(const std::string& text, const ReadRequest&) {
+ReadValue read_components_data(const std::string& text, const ReadRequest&, const Context&) {
   return {{text, read_components(text)}, {text}};
 }
 
-Paths write_components_data(const Data& data, const WriteRequest& request) {
+Paths write_components_data(const Data& data, const WriteRequest& request, const Context&) {
   return write_with_extra(request, [&]() -> Paths {
     write_components(request.target, std::get<Components>(data), request.overwrite,
                      request.together);
@@ -117,38 +117,39 @@ Paths write_components_data(const Data& data, const WriteRequest& request) {
 }
 
 /// One mesh as a model without expressions.
-MorphableModel model_of_mesh(const std::filesystem::path& path) {
-  TriMesh mesh = read_mesh(path);
+MorphableModel model_of_mesh(const std::filesystem::path& path, const Context& context) {
+  TriMesh mesh = read_mesh(path, context);
   return {std::make_shared<Connectivity>(std::move(mesh.connectivity)),
           std::move(mesh.positions),
           {},
           {}};
 }
 
-MorphableModel model_of(const ModelSpec& spec, const ReadRequest& request) {
+MorphableModel model_of(const ModelSpec& spec, const ReadRequest& request, const Context& context) {
   const bool is_person = spec.fit || !spec.identity_text.empty();
   if (request.identities && !is_person && !is_mesh_extension(spec.path.extension().string())) {
-    return read_model(spec.path, request.threads);
+    return read_model(spec.path, context);
   }
   if (!std::filesystem::exists(spec.path)) fail_missing(spec.path.string());
   if (std::filesystem::is_directory(spec.path) || is_model(spec.path)) {
-    return MorphableModel(read_person(spec, request.threads));
+    return MorphableModel(read_person(spec, context));
   }
-  if (!is_person) return model_of_mesh(spec.path);
+  if (!is_person) return model_of_mesh(spec.path, context);
   throw MismatchError(spec.name() + ": '" + spec.path.string() +
                       "' is one mesh and has no identities");
 }
 
-ReadValue read_model_files(const std::string& text, const ReadRequest& request) {
+ReadValue read_model_files(const std::string& text, const ReadRequest& request,
+                           const Context& context) {
   const ModelSpec spec = ModelSpec::parse(text);
   if (is_scene_file(spec.path) && !spec.fit && spec.identity_text.empty()) {
-    Scene scene = read_scene(spec.path);
+    Scene scene = read_scene(spec.path, context);
     std::ranges::move(scene.model_notes, std::back_inserter(scene.notes));
     return {{spec.name(), ModelData{MorphableModel(*scene.model)}, {.path = spec.path}},
             std::move(scene.files),
             std::move(scene.notes)};
   }
-  ReadValue read{{spec.name(), ModelData{model_of(spec, request)}, {.path = spec.path}},
+  ReadValue read{{spec.name(), ModelData{model_of(spec, request, context)}, {.path = spec.path}},
                  {spec.path},
                  spec.notes()};
   if (spec.fit) read.files.push_back(*spec.fit);
@@ -156,8 +157,9 @@ ReadValue read_model_files(const std::string& text, const ReadRequest& request) 
   return read;
 }
 
-ReadValue read_model_data(const std::string& text, const ReadRequest& request) {
-  ReadValue read = read_model_files(text, request);
+ReadValue read_model_data(const std::string& text, const ReadRequest& request,
+                          const Context& context) {
+  ReadValue read = read_model_files(text, request, context);
   const MorphableModel& model = std::get<ModelData>(read.value.data).model;
   for (const std::string& note : notes_on_expressions(
            read.value.name, model.mean(), model.connectivity().triangles, model.expressions())) {
@@ -175,42 +177,39 @@ std::string mapping_text(const std::vector<std::pair<int, VertexIndex>>& landmar
   return text;
 }
 
-Paths write_model_data(const Data& data, const WriteRequest& request) {
+Paths write_model_data(const Data& data, const WriteRequest& request, const Context& context) {
   const auto& [model, performance, landmarks] = std::get<ModelData>(data);
   auto extra = request.extra;
   if (!landmarks.empty()) extra.emplace_back("landmarks68.txt", mapping_text(landmarks));
   const bool performs = !performance.names.empty();
   write_model(request.target, model, performs ? std::optional(performance) : std::nullopt,
-              request.overwrite, extra, request.together);
+              request.overwrite, extra, request.together, context);
   return {request.target};
 }
 
-Paths write_gltf_data(const Data& data, const WriteRequest& request) {
+Paths write_gltf_data(const Data& data, const WriteRequest& request, const Context& context) {
   const auto& [model, performance, landmarks] = std::get<ModelData>(data);
-  SequenceWriteOptions options;
-  options.overwrite = request.overwrite;
-  options.inputs = request.inputs;
-  options.together = request.together;
-  return write_gltf_model(model, performance, request.target, options, request.extra);
+  return write_gltf_model(model, performance, request.target, asked_for(request, {}), request.extra,
+                          context);
 }
 
-ReadValue read_regions_data(const std::string& text, const ReadRequest& request) {
+ReadValue read_regions_data(const std::string& text, const ReadRequest& request, const Context&) {
   return {{text, RegionData{read_regions(text, request.vertices, *request.triangles), {}}}, {text}};
 }
 
-ReadValue read_fit_data(const std::string& text, const ReadRequest&) {
+ReadValue read_fit_data(const std::string& text, const ReadRequest&, const Context&) {
   return {{text, read_fit(text)}, {text}};
 }
 
-ReadValue read_document(const std::string& text, const ReadRequest&) {
+ReadValue read_document(const std::string& text, const ReadRequest&, const Context&) {
   return {{text, Document{read_file(text)}}, {text}};
 }
 
 /// A format of text, which `text_of` makes of a value.
 template <typename Value>
-std::function<Paths(const Data&, const WriteRequest&)> writer_of(
+std::function<Paths(const Data&, const WriteRequest&, const Context&)> writer_of(
     std::string (*text_of)(const Value&)) {
-  return [text_of](const Data& data, const WriteRequest& request) {
+  return [text_of](const Data& data, const WriteRequest& request, const Context&) {
     return write_text(request, text_of(std::get<Value>(data)));
   };
 }
@@ -236,19 +235,19 @@ void add_sequence_formats(OperationTable& table) {
                             const BoundParameters<SequenceWriteOptions>& writing,
                             std::function<HeldParts(const Parameters&)> holds,
                             bool has_fields = false) {
-    table.add(Format{.name = std::move(name),
-                     .kind = DataKind::sequence,
-                     .extensions = std::move(extensions),
-                     .reading = sequence_parameters().declared(),
-                     .read = read_sequence_data,
-                     .writing = writing.declared(),
-                     .write =
-                         [writing](const Data& data, const WriteRequest& request) {
-                           return write_sequence_data(data, request,
-                                                      writing.read(request.parameters));
-                         },
-                     .fields = has_fields,
-                     .holds = std::move(holds)});
+    table.add(Format{
+        .name = std::move(name),
+        .kind = DataKind::sequence,
+        .extensions = std::move(extensions),
+        .reading = sequence_parameters().declared(),
+        .read = read_sequence_data,
+        .writing = writing.declared(),
+        .write =
+            [writing](const Data& data, const WriteRequest& request, const Context& context) {
+              return write_sequence_data(data, request, writing.read(request.parameters), context);
+            },
+        .fields = has_fields,
+        .holds = std::move(holds)});
   };
   for (const SequenceFormat& format : sequence_formats()) {
     add(

@@ -23,7 +23,7 @@ std::vector<std::filesystem::path> write_with_extra(
 std::vector<std::filesystem::path> write_text(const WriteRequest& request, const std::string& text);
 
 /// The same with the text of a document.
-std::vector<std::filesystem::path> write_document(const Data& document,
-                                                  const WriteRequest& request);
+std::vector<std::filesystem::path> write_document(const Data& document, const WriteRequest& request,
+                                                  const Context& context = {});
 
 }  // namespace mimetra

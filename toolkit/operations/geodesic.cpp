@@ -67,7 +67,9 @@ double memory_of_geodesic(const Invocation& invocation) {
   // Factors, with their fill-in: measured on surfaces of 7 to 325 thousand vertices.
   constexpr double kOfVertex = 3700;
   const int vertices = invocation.sequence("mesh").vertices();
-  return is_exact(invocation) ? exact_distance_bytes(vertices, 1, 1) : kOfVertex * vertices;
+  return is_exact(invocation)
+             ? distance_bytes(GeodesicMethod::exact, vertices, 1, invocation.context)
+             : kOfVertex * vertices;
 }
 
 /// Throws where there is nothing to measure, or not the memory for it.
@@ -86,15 +88,14 @@ void check_mesh(const Invocation& invocation, const MeshSequence& mesh) {
 
 Outcome run_geodesic(const Invocation& invocation) {
   const MeshSequence& sequence = invocation.sequence("mesh");
-  GeodesicCall call = geodesic_parameters().read(invocation.parameters);
-  call.distances.threads = invocation.threads;
-  call.distances.notes = warnings_of(invocation);
+  const GeodesicCall call = geodesic_parameters().read(invocation.parameters);
   const MeshSequence mesh = sequence.slice(0, 1).with_rest(sequence.frame(0));
   check_mesh(invocation, mesh);
   const SupportRange range = in_command_terms(invocation.parameters, [&] {
     return support_range(call.d_min, call.d_max, mesh.diameter());
   });
-  const SurfaceDistances distances = distances_along(mesh.rest(), mesh.triangles(), call.distances);
+  const SurfaceDistances distances =
+      distances_along(mesh.rest(), mesh.triangles(), call.distances, invocation.context.part(0, 0));
   const Eigen::VectorXd distance = nearest(distances, call.sources, mesh.vertices());
   const Eigen::VectorXd support = geodesic::support_map(distance, range.d_min, range.d_max);
   int reached = 0;

@@ -116,8 +116,7 @@ Operation info_operation() {
     const FrameSource& sequence = *shown.frames;
     const MeshReport mesh = inspect(sequence.rest(), sequence.connectivity());
     const SurfaceParts parts = surface_parts(sequence.rest(), sequence.triangles());
-    const double moved =
-        motion(sequence, {.threads = invocation.threads, .progress = invocation.progress});
+    const double moved = motion(sequence, invocation.context);
     Json report = report_of(sequence, mesh, parts, moved);
     std::string summary = summary_of(sequence, mesh, parts, moved);
     if (!shown.fields.empty()) {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "toolkit/mesh/ranks.h"
+#include "toolkit/mesh/context.h"
 
 namespace mimetra {
 
@@ -13,6 +13,6 @@ std::vector<std::filesystem::path> input_files(const std::vector<std::filesystem
 
 /// Compares the files of all ranks with the first one's by their number, sizes, and first and last
 /// 64 kB. Throws MismatchError on ranks that have others.
-void check_same_inputs(const std::vector<std::filesystem::path>& inputs, const Ranks& ranks);
+void check_same_inputs(const std::vector<std::filesystem::path>& inputs, const Context& context);
 
 }  // namespace mimetra

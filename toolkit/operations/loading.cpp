@@ -5,7 +5,6 @@
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 
@@ -14,30 +13,23 @@ namespace {
 /// Reads one input after the other.
 class Loader {
  public:
-  Loader(const OperationTable& table, const Parameters& parameters, const Progress& progress,
-         const Log& log, int threads, bool may_stream)
-      : table_(table),
-        parameters_(parameters),
-        progress_(progress),
-        log_(log),
-        threads_(threads),
-        may_stream_(may_stream) {}
+  Loader(const OperationTable& table, const Parameters& parameters, const Log& log, bool may_stream)
+      : table_(table), parameters_(parameters), log_(log), may_stream_(may_stream) {}
 
-  NamedData load(const Input& input, const std::string& text) {
-    if (input.run) return run(text);
+  NamedData load(const Input& input, const std::string& text, const Context& context) {
+    if (input.run) return run(text, context);
     const Format& format = table_.reader(input.kind, text);
     if (input.kind == DataKind::regions && vertices_ == 0) {
       throw UsageError(text + ": regions speak of a mesh, and no input has one");
     }
     const Parameters as_it_is(parameters_.declared());
-    ReadValue read = format.read(text, {.parameters = input.shape ? as_it_is : parameters_,
-                                        .fields = input.fields,
-                                        .identities = input.identities,
-                                        .may_stream = may_stream_ && input.streamed,
-                                        .vertices = vertices_,
-                                        .triangles = &triangles_,
-                                        .progress = progress_,
-                                        .threads = threads_});
+    const ReadRequest request{.parameters = input.shape ? as_it_is : parameters_,
+                              .fields = input.fields,
+                              .identities = input.identities,
+                              .may_stream = may_stream_ && input.streamed,
+                              .vertices = vertices_,
+                              .triangles = &triangles_};
+    ReadValue read = format.read(text, request, context);
     for (const std::string& note : read.notes) {
       if (log_) log_(LogLevel::warning, note);
     }
@@ -68,7 +60,7 @@ class Loader {
   }
 
   /// The manifest; and what the run read, read again.
-  NamedData run(const std::string& text) {
+  NamedData run(const std::string& text, const Context& context) {
     RunRead read;
     read.record = read_run(text);
     const Operation* operation = table_.find(read.record.operation);
@@ -85,7 +77,7 @@ class Loader {
       }
     }
     LoadedInputs loaded = load_inputs(table_, *operation, invocation.parameters, read.record.inputs,
-                                      progress_, log_, threads_);
+                                      log_, {}, false, context);
     for (const Input& input : operation->inputs) {
       if (input.optional || loaded.data.contains(input.name)) continue;
       throw IoError(read.record.manifest.string(), "names no " + input.name + " of the run");
@@ -93,7 +85,7 @@ class Loader {
     files.push_back(read.record.manifest);
     files.insert(files.end(), loaded.files.begin(), loaded.files.end());
     invocation.inputs = std::move(loaded.data);
-    invocation.threads = threads_;
+    invocation.context = Context().with_threads(context.threads());
     invocation.landmark_finder = table_.landmark_finder();
     Document manifest{read_file(read.record.manifest)};
     Origin origin;
@@ -103,9 +95,7 @@ class Loader {
 
   const OperationTable& table_;
   const Parameters& parameters_;
-  const Progress& progress_;
   const Log& log_;
-  int threads_;
   bool may_stream_;
   int vertices_ = 0;
   Triangles triangles_;
@@ -116,15 +106,19 @@ class Loader {
 LoadedInputs load_inputs(const OperationTable& table, const Operation& operation,
                          const Parameters& parameters,
                          const std::map<std::string, std::vector<std::string>>& names,
-                         const Progress& progress, const Log& log, int threads,
-                         std::map<std::string, std::vector<NamedData>> given, bool may_stream) {
-  Loader loader(table, parameters, progress, log, threads, may_stream);
+                         const Log& log, std::map<std::string, std::vector<NamedData>> given,
+                         bool may_stream, const Context& context) {
+  Loader loader(table, parameters, log, may_stream);
   LoadedInputs loaded{std::move(given), {}};
+  double count = 0, done = 0;
+  for (const auto& [name, texts] : names) count += static_cast<double>(texts.size());
   const auto load = [&](const Input& input) {
     const auto named = names.find(input.name);
     if (named == names.end()) return;
     for (const std::string& text : named->second) {
-      loaded.data[input.name].push_back(loader.load(input, text));
+      const Context part = context.part(done / count, (done + 1) / count);
+      loaded.data[input.name].push_back(loader.load(input, text, part));
+      ++done;
     }
   };
   for (const Input& input : operation.inputs) {

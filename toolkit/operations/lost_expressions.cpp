@@ -7,6 +7,7 @@
 #include "toolkit/io/weight_file.h"
 #include "toolkit/model/animation.h"
 #include "toolkit/operations/counted.h"
+#include "toolkit/operations/weight_tables.h"
 
 namespace mimetra {
 

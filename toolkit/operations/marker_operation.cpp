@@ -54,13 +54,11 @@ Json json_of(const FaceLandmarks& face) {
 }
 
 Outcome run_markers(const Invocation& invocation) {
-  MarkersCall call = markers_parameters().read(invocation.parameters);
-  call.search.threads = invocation.threads;
-  call.search.progress = invocation.progress;
+  const MarkersCall call = markers_parameters().read(invocation.parameters);
   const Head source = head_of(invocation.input("source"), invocation.log, call.ignore_files);
   const Head target = head_of(invocation.input("target"), invocation.log, call.ignore_files);
-  const AutomaticMarkers found =
-      automatic_markers(source, target, invocation.landmark_finder, call.search);
+  const AutomaticMarkers found = automatic_markers(source, target, invocation.landmark_finder,
+                                                   call.search, invocation.context);
   for (const std::string& warning : found.warnings()) invocation.warn(warning);
   std::vector<std::string> comments;
   for (const int landmark : found.landmarks) comments.push_back(landmark_name(landmark));

@@ -79,14 +79,13 @@ class MarkersTo {
 
   MarkersBetween operator()(const NamedData& target) const {
     return [search = search_, &target, &invocation = invocation_, name = source_,
-            ignore_files = ignore_files_](const TriMesh& source) {
+            ignore_files = ignore_files_](const TriMesh& source, const Context& context) {
       if (!*search) {
         Head head = head_of(invocation.input(name), invocation.log, ignore_files);
         head.mesh = source;
-        search->emplace(std::move(head), invocation.landmark_finder,
-                        FaceSearchOptions{.threads = invocation.threads});
+        search->emplace(std::move(head), invocation.landmark_finder);
       }
-      return (**search)(head_of(target, invocation.log, ignore_files));
+      return (**search)(head_of(target, invocation.log, ignore_files), context);
     };
   }
 
@@ -231,19 +230,18 @@ std::vector<Parameter> match_parameters() {
   return parameters;
 }
 
+std::vector<Exclusion> pairing_exclusions() {
+  return {{{"markers"},
+           {"correspondence"},
+           "--correspondence tells what belongs together, too; leave one of them out"},
+          {{"index-base"}, {"!markers"}, "there are no vertices to count without --markers"}};
+}
+
 std::vector<Target> targets_of(const Invocation& invocation, const std::string& source_name) {
   const Parameters& parameters = invocation.parameters;
   const std::vector<NamedData>& given = invocation.inputs.at("target");
   const auto markers = named_for_each(parameters, "markers", given.size());
   const auto pairs = named_for_each(parameters, "correspondence", given.size());
-  const bool has_markers = !parameters.paths("markers").empty();
-  if (has_markers && !pairs.empty()) {
-    throw UsageError(
-        "--markers and --correspondence: only one of them tells what belongs together");
-  }
-  if (!has_markers && parameters.is_set("index-base")) {
-    throw UsageError("--index-base: there are no vertices to count without --markers");
-  }
   std::vector<WeightRules> rules(given.size());
   if (parameters.find("rules")) {
     rules = rules_of(invocation);
@@ -273,32 +271,27 @@ std::vector<Target> targets_of(const Invocation& invocation, const std::string& 
 }
 
 void check_targets(const Invocation& invocation, const std::vector<Target>& targets,
-                   const FrameSource& source, const SolveOptions& solving) {
+                   const FrameSource& source, const SolveOptions& options) {
   const TriMesh from{source.rest(), source.connectivity()};
-  const MatchOptions options{.threads = invocation.threads, .notes = warnings_of(invocation)};
+  const Context context = invocation.context.part(0, 0).without_ranks();
   in_command_terms(invocation.parameters, [&] {
     for (const Target& target : targets) {
-      check_rules(target, solving);
+      check_rules(target, options);
       const BlendshapeModel& model = target.model;
       const TriMesh to{model.neutral(), model.connectivity()};
       if (const auto* markers = std::get_if<std::vector<Marker>>(&target.match)) {
-        check_given_markers(*markers, target.marker_places, from, to, target.name, options.notes);
+        check_given_markers(*markers, target.marker_places, from, to, target.name, context);
         continue;
       }
       const bool is_drawn = std::holds_alternative<MarkersBetween>(target.match) &&
                             invocation.landmark_finder && is_to_be_paired(source, target);
       if (!is_drawn) {
-        MatchedTarget(source, target, options);
+        MatchedTarget(source, target, {}, context);
       } else {
         invocation.info(target.name + ": has other faces; markers will be looked for");
       }
     }
   });
-}
-
-void check_targets(const Invocation& invocation) {
-  check_targets(invocation, targets_of(invocation), *invocation.get<FieldSequence>("source").frames,
-                solving_parameters().read(invocation.parameters));
 }
 
 Json json_of(const MatchReport& match) {

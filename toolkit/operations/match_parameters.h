@@ -14,6 +14,8 @@ namespace mimetra {
 std::vector<Parameter> pairing_parameters();
 /// The same and --rules, of those that solve for a target's weights.
 std::vector<Parameter> match_parameters();
+/// Exclusions among the options of pairing.
+std::vector<Exclusion> pairing_exclusions();
 
 /// The call's targets and how they are paired with its source: where nothing is named, by markers
 /// that are looked for if faces differ. Rules of expressions are those named, or in a model's
@@ -27,9 +29,7 @@ std::vector<Target> targets_of(const Invocation& invocation, const std::string& 
 /// Throws and warns as a run does of the call's targets before anything is fitted to them: faces,
 /// rules, given markers and correspondences. Markers that would be looked for in drawings are not.
 void check_targets(const Invocation& invocation, const std::vector<Target>& targets,
-                   const FrameSource& source, const SolveOptions& solving);
-/// The same of targets_of() and what else the call says.
-void check_targets(const Invocation& invocation);
+                   const FrameSource& source, const SolveOptions& options);
 
 /// What a correspondence is worth, for reports and for people.
 Json json_of(const MatchReport& match);

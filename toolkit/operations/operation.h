@@ -8,16 +8,15 @@
 #include <vector>
 
 #include "toolkit/correspondence/landmark_finder.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/operations/data.h"
+#include "toolkit/operations/exclusion.h"
 #include "toolkit/operations/format.h"
 #include "toolkit/operations/parameter.h"
 #include "toolkit/operations/run_file.h"
 
 namespace mimetra {
-
-class Ranks;
 
 /// Something an operation works on.
 struct Input {
@@ -74,11 +73,10 @@ struct Invocation {
   /// Outputs asked for and where their values go, in order (no paths for a host that takes values);
   /// others need not be computed.
   std::map<std::string, std::vector<std::filesystem::path>> wanted;
-  Progress progress;
+  /// How the call runs: with the ranks of other processes only if the operation is shared. Its
+  /// notes become warnings of the log once with_notes_as_warnings() made it.
+  Context context;
   Log log;
-  int threads = 0;  ///< 0 for all there are; results do not depend on it
-  /// Of an operation that is shared by several processes; results do not depend on them, either.
-  const Ranks* ranks = nullptr;
   /// The program's; empty where it cannot find faces.
   LandmarkFinder landmark_finder = {};
 
@@ -88,16 +86,17 @@ struct Invocation {
   }
   template <typename T>
   const T* find(const std::string& name) const {
-    const auto found = inputs.find(name);
-    return found == inputs.end() || found->second.empty()
-               ? nullptr
-               : &std::get<T>(found->second.front().data);
+    return has_input(name) ? &get<T>(name) : nullptr;
   }
   /// The first value of an input. Throws std::out_of_range where it has none.
   const NamedData& input(const std::string& name) const { return inputs.at(name).front(); }
   /// Its frames, all in memory.
   const MeshSequence& sequence(const std::string& name) const {
     return get<FieldSequence>(name).sequence();
+  }
+  bool has_input(const std::string& name) const {
+    const auto found = inputs.find(name);
+    return found != inputs.end() && !found->second.empty();
   }
   bool wants(const std::string& output) const { return wanted.contains(output); }
   void warn(const std::string& message) const;
@@ -135,6 +134,9 @@ struct Operation {
   std::vector<std::string> examples;  ///< two command lines without the program's name
   std::function<Outcome(const Invocation&)> run;
   std::vector<Measure> measures = {};
+  /// Options, inputs and outputs that do not go together: a Call refuses them before it reads
+  /// anything.
+  std::vector<Exclusion> exclusions = {};
   /// Several processes compute it together: frames are dealt out to them, and vertices of the
   /// decomposition. The first one writes.
   bool shared = false;

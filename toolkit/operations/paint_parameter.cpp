@@ -74,37 +74,20 @@ Parameter paint_parameter() {
           "regions as painted: a field, a picture or a list"};
 }
 
-void check_paint(const Invocation& invocation) {
-  const Parameters& parameters = invocation.parameters;
-  const RegionData* const given = invocation.find<RegionData>("regions");
-  if (given && given->regions.weights.size() > 0) {
-    const std::string& name = invocation.input("regions").name;
-    if (parameters.flag("per-region")) {
-      throw UsageError("--per-region: " + name +
-                       " holds weights of vertices, which say how much of the motion each takes; "
-                       "weights of each region move the whole face");
-    }
-    refuse_options(parameters, {"complete", "complete-limit"},
-                   name + " holds weights of vertices and is taken as it is");
-  }
-  if (!parameters.optional_text("paint")) return;
-  const std::string reason = "the regions are those of --paint";
-  refuse_options(parameters,
-                 {"full", "k", "curve", "select", "triangles", "only", "without", "radius", "rest"},
-                 reason);
-  refuse_options(parameters, options_of_energy(), reason);
-  for (const char* const name : {"regions", "components"}) {
-    if (!invocation.inputs.contains(name) || invocation.inputs.at(name).empty()) continue;
-    throw UsageError("--" + std::string(name) + ": " + reason + "; leave one of them out");
-  }
-  if (invocation.wants("components-out")) {
-    throw UsageError("--components-out: there are no components with --paint");
-  }
-  if (parameters.flag("per-region")) {
-    throw UsageError(
-        "--per-region: weights of each region move the whole face, and --paint says how much of "
-        "the motion each vertex takes; name hard regions instead, --regions");
-  }
+std::vector<Exclusion> paint_exclusions() {
+  return {{concatenated<std::string>(
+               {{"full", "k", "curve", "select", "triangles", "only", "without", "radius", "rest"},
+                options_of_energy()}),
+           {"paint"},
+           "the regions are those of --paint"},
+          {{"regions", "components"},
+           {"paint"},
+           "the regions are those of --paint; leave one of them out"},
+          {{"components-out"}, {"paint"}, "there are no components with --paint"},
+          {{"per-region"},
+           {"paint"},
+           "weights of each region move the whole face, and --paint says how much of the motion "
+           "each vertex takes; name hard regions instead, --regions"}};
 }
 
 std::optional<GivenRegions> painted_region_of(const Invocation& invocation) {

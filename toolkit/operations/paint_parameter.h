@@ -12,9 +12,9 @@ namespace mimetra {
 /// or a list; see read_painting().
 Parameter paint_parameter();
 
-/// Throws UsageError where --paint and an option or input that looks for regions or names others
-/// are given, which it names, or weights of each region.
-void check_paint(const Invocation& invocation);
+/// Exclusions by --paint: options and inputs that look for regions or name others, and weights of
+/// each region.
+std::vector<Exclusion> paint_exclusions();
 
 /// The region that --paint makes of the source's vertices; none where it is not given. Warns of
 /// what the painting's notes say. Throws MismatchError for a field that is not there or holds more

@@ -31,7 +31,7 @@ constexpr std::string_view choice_name(AnchorWord value) {
 
 /// An anchor that nobody names holds nothing where fixed vertices do; one that is named is refused
 /// there.
-void apply_anchor(const Parameters& parameters, VertexTransferOptions& options) {
+void apply_anchor(const Parameters& parameters, SolveOptions& options) {
   if (!parameters.is_set("anchor")) return;
   const std::string& text = parameters.text("anchor");
   if (const auto word = choice_of<AnchorWord>(text)) {
@@ -50,30 +50,32 @@ void apply_anchor(const Parameters& parameters, VertexTransferOptions& options) 
       static_cast<VertexIndex>(std::get<std::int64_t>(parse_value(vertex, text)));
 }
 
-std::function<Positions(const std::string&)> rest_reader(const FrameSource* sequence) {
-  return [sequence](const std::string& path) {
-    return sequence ? read_rest(path, *sequence) : Positions();
-  };
+Positions rest_in(const std::string& path, const FieldSequence* sequence) {
+  return sequence ? read_rest(path, *sequence->frames) : Positions();
 }
 
-BoundParameters<SourceOptions> rest_named(const std::string& name, const std::string& what,
-                                          const FrameSource* sequence) {
+std::vector<RigidTransform> motion_in(const std::string& path, const FieldSequence* sequence) {
+  if (!sequence) return {};
+  return read_motion(path, sequence->frames->frames()).transforms;
+}
+
+BoundParameters<SourceOptions> rest_named(const std::string& name, const std::string& what) {
   BoundParameters<SourceOptions> list;
   list.add_word_or_file<SourceRest, Positions>(
       name, SourceOptions::kRest,
-      what + "; default the neutral where it is known, else the first frame",
-      rest_reader(sequence));
+      what + "; default the neutral where it is known, else the first frame", rest_in);
   return list.under(kSourceGroup);
 }
 
-BoundParameters<DecompositionOptions> decomposition_parameters() {
-  using Options = DecompositionOptions;
+BoundParameters<AnalysisOptions> decomposition_parameters() {
+  using Options = AnalysisOptions;
   BoundParameters<Options> list;
   list.add("sparsity", Options::kSparsity, "weight lambda of the sparsity term")
       .add("rho", Options::kRho, "penalty of ADMM")
       .add("iterations", Options::kIterations,
-           "outer iterations at most; default " + std::to_string(Options::kUsualIterations) +
-               ", with --compat " + std::to_string(Options::kReferenceIterations))
+           "outer iterations at most; default " +
+               std::to_string(DecompositionOptions::kUsualIterations) + ", with --compat " +
+               std::to_string(DecompositionOptions::kReferenceIterations))
       .add("admm-iterations", Options::kAdmmIterations, "ADMM steps in each")
       .add("tolerance", Options::kTolerance,
            "stop when the energy changes by at most this share three times in a row; 0 runs all "
@@ -96,17 +98,11 @@ Parameter memory_parameter() {
           "machine has left"};
 }
 
-/// What a run may take besides what its process has.
-double memory_for(const Parameters& parameters) {
-  const auto allowed = parameters.bytes("memory");
-  // Less than nothing where the process has more already: what is missing counts that.
-  return allowed ? *allowed - MemoryUse::of_this_process().now : available_memory();
-}
-
-/// Vertices where regions may lie, named by `options` of one name; not read without a sequence.
-BoundParameters<AnalysisOptions> place_parameters(const FieldSequence* sequence) {
-  const auto bound = [sequence](const std::string& name, bool wanted) {
-    return [sequence, name, wanted](const Parameters& parameters, AnalysisOptions& options) {
+/// Vertices where regions may lie.
+BoundParameters<AnalysisOptions> place_parameters() {
+  const auto bound = [](const std::string& name, bool wanted) {
+    return [name, wanted](const Parameters& parameters, AnalysisOptions& options,
+                          const FieldSequence* sequence) {
       const auto text = parameters.optional_text(name);
       if (!sequence || !text) return;
       const std::vector<bool> named = named_vertices(*text, *sequence);
@@ -131,11 +127,9 @@ BoundParameters<AnalysisOptions> place_parameters(const FieldSequence* sequence)
 
 /// --per-region and what belongs to it.
 BoundParameters<SolveOptions> regional_parameters() {
-  BoundParameters<LocalWeightsOptions> local;
-  local.add("region-ridge", LocalWeightsOptions::kRidge,
-            "per region: pull of a region's weights towards those of the whole face");
   BoundParameters<SolveOptions> list;
-  list.add("per-region", SolveOptions::kPerRegion,
+  return list
+      .add("per-region", SolveOptions::kPerRegion,
            "give each region blendshape weights of its own, found together on all triangles")
       .add("falloff", SolveOptions::kFalloff,
            "distance from the rim of the regions, or of what is painted 1, over which the motion "
@@ -144,15 +138,14 @@ BoundParameters<SolveOptions> regional_parameters() {
                " around regions of meshes without expressions; with --per-region a region's "
                "weights do, default " +
                to_text(SolveOptions::kUsualFalloff))
-      .add(&SolveOptions::local, local);
-  return list;
+      .add("region-ridge", SolveOptions::kRegionRidge,
+           "per region: pull of a region's weights towards those of the whole face");
 }
 
-BoundParameters<VertexTransferOptions> vertex_parameters() {
-  using Options = VertexTransferOptions;
-  BoundParameters<Options> list;
-  list.add("triangle-weight", Options::kTriangleWeight,
-           "vertex space: every triangle alike, or by area")
+BoundParameters<SolveOptions> vertex_parameters() {
+  using Options = SolveOptions;
+  auto list = triangle_weight_parameters<Options>();
+  return list
       .add("outside", Options::kOutside,
            "outside the regions, vertex space: vertices stay, or triangles keep their shape; "
            "blendshape space: expressions move the whole face. Where the border is soft, vertices "
@@ -166,40 +159,36 @@ BoundParameters<VertexTransferOptions> vertex_parameters() {
             "vertex space: what holds a piece in place: source (its motion), centroid, or a "
             "vertex"},
            apply_anchor);
-  return list;
 }
 
 }  // namespace
 
-BoundParameters<SourceOptions> alignment_parameters(const FrameSource* sequence) {
-  using Motion = std::vector<RigidTransform>;
+BoundParameters<SourceOptions> alignment_parameters() {
   BoundParameters<SourceOptions> list;
-  list.add_word_or_file<HeadMotion, Motion>(
+  list.add_word_or_file<HeadMotion, std::vector<RigidTransform>>(
       "align", SourceOptions::kHeadMotion,
       "head motion to take out first: fitted on what moves least, on all vertices, together with a "
       "target's expressions, none, or as an align run's manifest tells; default none where the "
       "neutral is known, else stable, or joint where no vertex is still and that predicts better",
-      [sequence](const std::string& path) {
-        return sequence ? read_motion(path, sequence->frames()).transforms : Motion();
-      });
+      motion_in);
   return list.brief("head motion to take out {stable,all,joint,none,FILE}").under(kSourceGroup);
 }
 
-BoundParameters<SourceOptions> source_rest_parameters(const FrameSource* sequence) {
-  return rest_named("source-rest", "source's undeformed shape", sequence)
+BoundParameters<SourceOptions> source_rest_parameters() {
+  return rest_named("source-rest", "source's undeformed shape")
       .brief("source's undeformed shape {neutral,first,mean,FILE}");
 }
 
-BoundParameters<SourceOptions> rest_parameters(const FrameSource* sequence) {
-  return rest_named("rest", "rest pose", sequence);
+BoundParameters<SourceOptions> rest_parameters() {
+  return rest_named("rest", "rest pose");
 }
 
-BoundParameters<AnalysisOptions> analysis_rest_parameters(const FrameSource* sequence) {
+BoundParameters<AnalysisOptions> analysis_rest_parameters() {
   BoundParameters<AnalysisOptions> list;
   list.add_word_or_file<RestPose, Positions>(
       "rest", AnalysisOptions::kRest,
       "rest pose of the decomposition: a frame, the mean, or a mesh; default that of the source",
-      rest_reader(sequence));
+      rest_in);
   return list.under(kDecompositionGroup);
 }
 
@@ -212,78 +201,53 @@ BoundParameters<DistanceOptions> distance_parameters() {
 }
 
 BoundParameters<AnalysisOptions> count_parameters(const AnalysisOptions& defaults) {
-  BoundParameters<DecompositionOptions> count(defaults.decomposition);
-  count.add("k", DecompositionOptions::kCount, "number of components")
-      .brief("number of components");
   BoundParameters<AnalysisOptions> list(defaults);
-  return list.add(&AnalysisOptions::decomposition, count).under(kDecompositionGroup);
+  return list.add("k", AnalysisOptions::kCount, "number of components")
+      .brief("number of components")
+      .under(kDecompositionGroup);
 }
 
-BoundParameters<AnalysisOptions> analysis_parameters(const FieldSequence* sequence) {
+BoundParameters<AnalysisOptions> analysis_parameters() {
   BoundParameters<AnalysisOptions> list;
   list.add("d-min", AnalysisOptions::kMinimum,
            "geodesic distance up to which sparsity costs nothing")
       .add("d-max", AnalysisOptions::kMaximum, "geodesic distance from which it costs all")
-      .add(&AnalysisOptions::decomposition, decomposition_parameters())
+      .add(decomposition_parameters())
       .add("compat", AnalysisOptions::kCompatibility,
            "splocs2013: follow the reference implementation to the letter; paper: also sum eq. 10 "
            "and 12 over two edges of each triangle")
       .add(&AnalysisOptions::distances, distance_parameters())
-      .add(place_parameters(sequence))
-      .add(memory_parameter(), [](const Parameters& parameters, AnalysisOptions& options) {
-        options.decomposition.memory = memory_for(parameters);
-      });
+      .add(place_parameters())
+      // Only refuses what is no amount of memory: within_memory() reads it.
+      .add(memory_parameter(),
+           [](const Parameters& parameters, AnalysisOptions&) { parameters.bytes("memory"); });
   return list.under(kDecompositionGroup);
 }
 
 BoundParameters<RegionChoiceOptions> region_parameters() {
-  BoundParameters<RegionOptions> regions;
-  regions
-      .add("region", RegionOptions::kShape,
-           "disc: within the radius; support: vertices with 95 % of the component's energy")
-      .add("coverage", RegionOptions::kCoverage,
-           "take the strongest regions until they hold this share of the motion energy")
-      .brief("take regions until they hold this share of the motion");
-  BoundParameters<RegionChoiceOptions> list;
-  list.add(selection_parameters())
-      .add("radius", RegionChoiceOptions::kRadius, "geodesic radius of a region")
+  using Options = RegionChoiceOptions;
+  BoundParameters<Options> list;
+  return list.add(selection_parameters())
+      .add("radius", Options::kRadius, "geodesic radius of a region")
       .brief("geodesic radius of a region")
-      .add(&RegionChoiceOptions::regions, regions);
-  return list.under(kRegionGroup);
+      .add("region", Options::kShape,
+           "disc: within the radius; support: vertices with 95 % of the component's energy")
+      .add("coverage", Options::kCoverage,
+           "take the strongest regions until they hold this share of the motion energy")
+      .brief("take regions until they hold this share of the motion")
+      .under(kRegionGroup);
 }
 
 BoundParameters<RegionChoiceOptions> completion_parameters() {
-  BoundParameters<CompletionOptions> completion;
-  completion
-      .add("complete", CompletionOptions::kShare,
+  using Options = RegionChoiceOptions;
+  BoundParameters<Options> list;
+  return list
+      .add("complete", Options::kComplete,
            "add discs to the regions until this share of each expression's motion is in them; 0 "
            "adds none")
-      .add("complete-limit", CompletionOptions::kLimit,
-           "share of the triangles that --complete may add");
-  BoundParameters<RegionChoiceOptions> list;
-  return list.add(&RegionChoiceOptions::completion, completion).under(kRegionGroup);
-}
-
-BoundParameters<BlendshapeTransferOptions> blendshape_parameters() {
-  using Options = BlendshapeTransferOptions;
-  BoundParameters<Options> list;
-  list.add("ridge", Options::kRidge, "pull of the weights towards 0")
-      .add("l1", Options::kSparsity, "sparsity of the weights")
-      .add("symmetry", Options::kSymmetry,
-           "how much the weights of the left and the right half of an expression are drawn "
-           "together; pairs are known by their names, or by --rules")
-      .add("exclusive", Options::kExclusive,
-           "expressions of which at most one is there in a frame, by ARKit's names; eyes: looking "
-           "up or down, and in or out; all: jawOpen or mouthClose, too");
-  return list;
-}
-
-BoundParameters<SolveOptions> axes_parameters() {
-  BoundParameters<SolveOptions> list;
-  return list
-      .add("axes", SolveOptions::kAxes,
-           "fit: the source is turned as its rest pose is to the target's; none: it is not")
-      .under(kSolvingGroup);
+      .add("complete-limit", Options::kCompleteLimit,
+           "share of the triangles that --complete may add")
+      .under(kRegionGroup);
 }
 
 BoundParameters<SolveOptions> solving_parameters() {
@@ -292,30 +256,40 @@ BoundParameters<SolveOptions> solving_parameters() {
            "solve for blendshape weights or vertices; auto: weights where the target has "
            "expressions")
       .brief("solve for")
-      .add(axes_parameters())
+      .add(axes_parameters<SolveOptions>())
       .add("smoothness", SolveOptions::kSmoothness,
            "time constant of smooth weights, or in vertex space of smooth motion; 0 smooths "
            "nothing")
       .brief("time constant of smooth motion")
-      .add(&SolveOptions::blendshape, blendshape_parameters())
+      .add(blendshape_parameters<SolveOptions>())
       .add(regional_parameters())
-      .add(&SolveOptions::vertex, vertex_parameters());
+      .add(vertex_parameters());
   return list.under(kSolvingGroup);
 }
 
-/// Regions that fade out take more of the face than were chosen.
-void check_falloff(const Parameters& parameters) {
-  if (!parameters.is_set("falloff")) return;
-  if (parameters.is_set("triangles")) {
-    throw UsageError(
-        "--triangles: bounds the regions without the border that --falloff adds; leave one of them "
-        "out");
-  }
-  if (parameters.choice<Selector>("select") == Selector::transfer) {
-    throw UsageError(
-        "--select transfer: chooses regions by which expressions move the whole face; with "
-        "--falloff they move the regions only; use --select energy");
-  }
+std::vector<Exclusion> solving_exclusions() {
+  return {{{"outside-smoothness"}, {"!outside=identity"}, "is about --outside identity"},
+          {{"triangles"},
+           {"falloff !per-region"},
+           "bounds the regions without the border that --falloff adds; leave one of them out"},
+          {{"select=transfer"},
+           {"falloff !per-region"},
+           "chooses regions by which expressions move the whole face; with --falloff they move the "
+           "regions only; use --select energy"},
+          {{"region-ridge"}, {"!per-region"}, "is about weights of each region, --per-region"},
+          {{"!smoothness=0"},
+           {"per-region"},
+           "with --per-region weights are found frame by frame; leave one of them out"},
+          {{"symmetry", "exclusive", "rules"},
+           {"per-region"},
+           "weights of each region, --per-region, follow no rules of expressions"},
+          {{"complete", "complete-limit"},
+           {"per-region"},
+           "with --per-region all triangles are looked at, and no discs are added"},
+          {{"rest"},
+           {"select=transfer"},
+           "has no effect with --select transfer, which needs no decomposition; the source's "
+           "undeformed shape is --source-rest"}};
 }
 
 /// Whether triangles of a target may have no partner in the source.
@@ -328,38 +302,15 @@ bool pairs_targets(const Invocation& invocation) {
   });
 }
 
-void check_outside(const Invocation& invocation) {
-  const Parameters& parameters = invocation.parameters;
-  if (parameters.choice<Outside>("outside") == Outside::identity) return;
-  refuse_options(parameters, {"outside-smoothness"}, "is about --outside identity");
-  if (pairs_targets(invocation)) return;
-  refuse_options(parameters, {"outside-weight"},
-                 "is about --outside identity, or targets of other faces than the source's");
-}
-
 void check_solving(const Invocation& invocation) {
   const Parameters& parameters = invocation.parameters;
-  check_outside(invocation);
-  if (!parameters.flag("per-region")) {
-    check_falloff(parameters);
-    refuse_options(parameters, {"region-ridge"}, "is about weights of each region, --per-region");
-    return;
-  }
-  if (parameters.number("smoothness") > 0) {
+  if (parameters.is_set("outside-weight") &&
+      parameters.choice<Outside>("outside") != Outside::identity && !pairs_targets(invocation)) {
     throw UsageError(
-        "--smoothness: with --per-region weights are found frame by frame; leave one of them out");
+        "--outside-weight: is about --outside identity, or targets of other faces than the "
+        "source's");
   }
-  for (const std::string name : {"symmetry", "exclusive", "rules"}) {
-    const bool is_left_out = name == "rules" && parameters.paths(name).empty();
-    if (!parameters.is_set(name) || is_left_out) continue;
-    throw UsageError("--" + name +
-                     ": weights of each region, --per-region, follow no rules of expressions");
-  }
-  for (const std::string name : {"complete", "complete-limit"}) {
-    if (!parameters.is_set(name)) continue;
-    throw UsageError("--" + name +
-                     ": with --per-region all triangles are looked at, and no discs are added");
-  }
+  if (!parameters.flag("per-region")) return;
   for (const NamedData& target : invocation.inputs.at("target")) {
     const BlendshapeModel& model = std::get<ModelData>(target.data).model.average();
     if (!solves_for_vertices(parameters, model)) continue;
@@ -395,7 +346,7 @@ Output components_output() {
 }
 
 bool solves_for_vertices(const Parameters& parameters, const BlendshapeModel& target) {
-  return solves_for_vertices(target, solving_parameters().read(parameters).space);
+  return solves_for_vertices(target, parameters.choice<Space>("space"));
 }
 
 Json json_of(const HeadMotionTaken& motion) {
@@ -414,15 +365,17 @@ Json json_of(const HeadMotionTaken& motion) {
   return json;
 }
 
+Context within_memory(const Invocation& invocation) {
+  const auto allowed = invocation.parameters.bytes("memory");
+  // If the process has more already, less than nothing: what is missing counts that.
+  return invocation.context.with_memory(allowed ? *allowed - MemoryUse::of_this_process().now
+                                                : available_memory());
+}
+
 DecompositionPlan analysis_plan(const Invocation& invocation, const FrameSource& source,
-                                int count) {
-  DecompositionPlan plan;
-  if (invocation.find<Components>("components")) return plan;
-  AnalysisOptions analysis = analysis_parameters().read(invocation.parameters);
-  analysis.decomposition.count = count;
-  analysis.threads = invocation.threads;
-  analysis.ranks = invocation.ranks;
-  plan = analysis_plan(source, analysis);
+                                const AnalysisOptions& options) {
+  if (invocation.find<Components>("components")) return {};
+  DecompositionPlan plan = analysis_plan(source, options, within_memory(invocation));
   plan.bytes += stored_bytes(source);
   if (!source.is_quick()) plan.scratch_bytes += frame_bytes(source) - stored_bytes(source);
   return plan;

@@ -11,8 +11,7 @@
 
 namespace mimetra {
 
-// The pipeline's options as parameters, shared by operations. Files that a call names must fit
-// `sequence`; without one they are not read, and what they hold is empty.
+// The pipeline's options as parameters, shared by operations.
 
 // Headings of the help under which they stand.
 inline constexpr const char* kRegionGroup = "Regions";
@@ -21,31 +20,68 @@ inline constexpr const char* kSourceGroup = "Rest pose and head motion";
 inline constexpr const char* kSolvingGroup = "Solving";
 
 /// --align.
-BoundParameters<SourceOptions> alignment_parameters(const FrameSource* sequence = nullptr);
+BoundParameters<SourceOptions> alignment_parameters();
 /// --source-rest of a transfer, and --rest of its decomposition.
-BoundParameters<SourceOptions> source_rest_parameters(const FrameSource* sequence = nullptr);
-BoundParameters<AnalysisOptions> analysis_rest_parameters(const FrameSource* sequence = nullptr);
+BoundParameters<SourceOptions> source_rest_parameters();
+BoundParameters<AnalysisOptions> analysis_rest_parameters();
 /// --rest of a sequence that is decomposed.
-BoundParameters<SourceOptions> rest_parameters(const FrameSource* sequence = nullptr);
+BoundParameters<SourceOptions> rest_parameters();
 /// --geodesics and --weld.
 BoundParameters<DistanceOptions> distance_parameters();
-/// -k, by default as many as the decomposition of `defaults` has.
+/// -k, by default as many as `defaults` has.
 BoundParameters<AnalysisOptions> count_parameters(const AnalysisOptions& defaults = {});
-/// All others of a decomposition but for its rest pose, the distances' included, with --only and
-/// --without, which name vertices of `sequence`.
-BoundParameters<AnalysisOptions> analysis_parameters(const FieldSequence* sequence = nullptr);
+/// All others of a decomposition but for its rest pose, with those of distances, and with --only
+/// and
+/// --without, which name vertices of the sequence.
+BoundParameters<AnalysisOptions> analysis_parameters();
 /// --select, --triangles, --radius, --region and --coverage.
 BoundParameters<RegionChoiceOptions> region_parameters();
 BoundParameters<RegionChoiceOptions> completion_parameters();
 /// --space and what belongs to each.
 BoundParameters<SolveOptions> solving_parameters();
-/// Those of weights alone: --axes, and of the weights themselves.
-BoundParameters<SolveOptions> axes_parameters();
-BoundParameters<BlendshapeTransferOptions> blendshape_parameters();
 
-/// Throws UsageError for options of a solve that would do nothing beside others: those of triangles
-/// outside where there are none, --region-ridge without --per-region, and with it those that such
-/// weights do not follow, also for targets that are solved for vertices.
+/// --axes.
+template <typename Options>
+BoundParameters<Options> axes_parameters() {
+  BoundParameters<Options> list;
+  return list
+      .add("axes", Options::kAxes,
+           "fit: the source is turned as its rest pose is to the target's; none: it is not")
+      .under(kSolvingGroup);
+}
+
+/// --triangle-weight.
+template <typename Options>
+BoundParameters<Options> triangle_weight_parameters() {
+  BoundParameters<Options> list;
+  return list
+      .add("triangle-weight", Options::kTriangleWeight,
+           "vertex space: every triangle alike, or by area")
+      .under(kSolvingGroup);
+}
+
+/// --ridge, --l1, --symmetry and --exclusive.
+template <typename Options>
+BoundParameters<Options> blendshape_parameters() {
+  BoundParameters<Options> list;
+  return list.add("ridge", Options::kRidge, "pull of the weights towards 0")
+      .add("l1", Options::kSparsity, "sparsity of the weights")
+      .add("symmetry", Options::kSymmetry,
+           "how much the weights of the left and the right half of an expression are drawn "
+           "together; pairs are known by their names, or by --rules")
+      .add("exclusive", Options::kExclusive,
+           "expressions of which at most one is there in a frame, by ARKit's names; eyes: looking "
+           "up or down, and in or out; all: jawOpen or mouthClose, too");
+}
+
+/// The call's context, within the memory of --memory: by default what the machine has left.
+Context within_memory(const Invocation& invocation);
+
+/// Exclusions among the options of a solve, and of --rest by --select transfer.
+std::vector<Exclusion> solving_exclusions();
+
+/// Throws UsageError for options of a solve that would do nothing for the call's targets:
+/// --outside-weight without triangles outside, --per-region if one is solved for vertices.
 void check_solving(const Invocation& invocation);
 
 /// Throws what check_border() throws for the targets of a call, as the command says it.
@@ -67,9 +103,9 @@ Json json_of(const HeadMotionTaken& motion);
 /// True for the vertex space of --space, and where a target has no expressions to solve for.
 bool solves_for_vertices(const Parameters& parameters, const BlendshapeModel& target);
 
-/// How the decomposition of a sequence, of which `count` components are asked for, keeps within
-/// --memory; what is kept of frames that are slow to read is included. Nothing for components that
-/// are given.
-DecompositionPlan analysis_plan(const Invocation& invocation, const FrameSource& source, int count);
+/// How the decomposition of a sequence keeps within --memory. The plan includes what is kept of
+/// frames that are slow to read. It is empty for components that are given.
+DecompositionPlan analysis_plan(const Invocation& invocation, const FrameSource& source,
+                                const AnalysisOptions& options);
 
 }  // namespace mimetra

@@ -41,22 +41,42 @@ struct RegionsCall {
       "simplify", &RegionsCall::simplify, {.minimum = 1e-6, .maximum = 1}};
 };
 
-BoundParameters<RegionsCall> regions_parameters(const FieldSequence* fields = nullptr) {
-  const FrameSource* sequence = fields ? fields->frames.get() : nullptr;
-  BoundParameters<RegionsCall> list;
-  return list.add(&RegionsCall::regions, region_parameters())
-      .add("component-fields", RegionsCall::kComponentFields,
-           "also write support_k and component_k of each region")
-      .add("simplify", RegionsCall::kSimplify,
-           "find the regions on this share of the vertices (as the command simplify chooses them) "
-           "and measure their discs on all of them; for fine meshes; default all")
-      .add("up", RegionsCall::kUp,
-           "axis that points up in --paraview's script; the face looks along +z, or -y where z is "
-           "up")
-      .add(&RegionsCall::analysis, count_parameters())
-      .add(&RegionsCall::analysis, analysis_parameters(fields))
-      .add(&RegionsCall::source, rest_parameters(sequence))
-      .add(&RegionsCall::source, alignment_parameters(sequence));
+const BoundParameters<RegionsCall>& regions_parameters() {
+  static const auto list =
+      BoundParameters<RegionsCall>()
+          .add(&RegionsCall::regions, region_parameters())
+          .add("component-fields", RegionsCall::kComponentFields,
+               "also write support_k and component_k of each region")
+          .add("simplify", RegionsCall::kSimplify,
+               "find the regions on this share of the vertices (as the command simplify chooses "
+               "them) and measure their discs on all of them; for fine meshes; default all")
+          .add("up", RegionsCall::kUp,
+               "axis that points up in --paraview's script; the face looks along +z, or -y where z "
+               "is up")
+          .add(&RegionsCall::analysis, count_parameters())
+          .add(&RegionsCall::analysis, analysis_parameters())
+          .add(&RegionsCall::source, rest_parameters())
+          .add(&RegionsCall::source, alignment_parameters());
+  return list;
+}
+
+std::vector<Exclusion> regions_exclusions() {
+  return concatenated<Exclusion>(
+      {{{{"up"}, {"!paraview"}, "is for the script of --paraview"}},
+       selection_exclusions(),
+       {{{"simplify"}, {"!region=disc"}, "needs --region disc; the others need all vertices"},
+        {{"simplify"}, {"select=transfer"}, "has no effect with --select transfer"},
+        {{"simplify"},
+         {"components"},
+         "has no effect on --components, which are decomposed already"},
+        {{"component-fields", "components-out"},
+         {"simplify"},
+         "components of all vertices are not made with --simplify"},
+        {{"select=transfer"}, {"!target"}, "needs the target of the transfer, --target MODEL"},
+        {{"target", "markers", "index-base", "correspondence"},
+         {"!select=transfer"},
+         "regions by energy do not depend on a target; use --select transfer"}},
+       pairing_exclusions()});
 }
 
 struct Found {
@@ -70,20 +90,13 @@ struct Found {
   double seconds = 0;
 };
 
-SourceOptions source_options(const Invocation& invocation, const RegionsCall& call) {
-  SourceOptions options = described(call.source, invocation.input("sequence"));
-  options.notes = call.analysis.notes;
-  options.threads = invocation.threads;
-  options.ranks = invocation.ranks;
-  return options;
-}
-
 /// On some of the vertices.
-Found found_on_simplified(const Invocation& invocation, const RegionsCall& call) {
+Found found_on_simplified(const Invocation& invocation, const RegionsCall& call,
+                          const Context& context) {
   const Source source = prepare_source(invocation.get<FieldSequence>("sequence").frames,
-                                       source_options(invocation, call));
-  SimplifiedRegions made =
-      regions_by_simplified(source, {.share = *call.simplify}, call.analysis, call.regions);
+                                       call.source, {}, context.part(0, 0));
+  SimplifiedRegions made = regions_by_simplified(source, {.share = *call.simplify}, call.analysis,
+                                                 call.regions, context);
   Found found{std::move(made.regions), source.head_motion};
   found.simplified_vertices = made.mesh.vertices.size();
   found.seconds = made.seconds;
@@ -91,83 +104,44 @@ Found found_on_simplified(const Invocation& invocation, const RegionsCall& call)
 }
 
 /// By components that are given, or those of the sequence without its motion.
-Found found_by_energy(const Invocation& invocation, const RegionsCall& call) {
-  if (call.simplify) return found_on_simplified(invocation, call);
+Found found_by_energy(const Invocation& invocation, const RegionsCall& call,
+                      const Context& context) {
+  if (call.simplify) return found_on_simplified(invocation, call, context);
   const std::shared_ptr<const FrameSource>& sequence =
       invocation.get<FieldSequence>("sequence").frames;
   Found found;
   const auto analysis = [&] {
     if (const auto given = given_components(invocation)) {
-      return analysis_of(*given, *sequence, moving_vertices(*sequence), call.analysis);
+      return analysis_of(*given, *sequence, moving_vertices(*sequence), call.analysis, context);
     }
-    const Source source = prepare_source(sequence, source_options(invocation, call));
+    const Source source = prepare_source(sequence, call.source, {}, context.part(0, 0));
     found.head_motion = source.head_motion;
-    return analyse(source, call.analysis);
+    return analyse(source, call.analysis, context);
   }();
-  found.regions = choose_regions(analysis, call.regions);
+  found.regions = choose_regions(analysis, call.regions, context.part(1, 1).without_ranks());
   found.components = analysis.components;
   found.seconds = analysis.seconds;
   return found;
 }
 
 /// By what they tell of the target's expressions.
-Found found_for_transfer(const Invocation& invocation, const RegionsCall& call) {
+Found found_for_transfer(const Invocation& invocation, const RegionsCall& call,
+                         const Context& context) {
   const Stopwatch stopwatch;
   const std::shared_ptr<const FrameSource>& sequence =
       invocation.get<FieldSequence>("sequence").frames;
-  SourceOptions of_source = source_options(invocation, call);
+  const Context at_start = context.part(0, 0);
   const MatchedTarget matched(*sequence, targets_of(invocation, "sequence").front(),
-                              {.source_rest = asked_rest(*sequence, of_source),
-                               .threads = invocation.threads,
-                               .notes = of_source.notes});
+                              asked_rest(*sequence, call.source), at_start.without_ranks());
   check_selection(*matched, call.regions, Space::automatic);
-  SolveOptions of_solving;
-  of_solving.threads = invocation.threads;
-  of_solving.ranks = invocation.ranks;
-  of_solving.notes = of_source.notes;
-  of_solving.progress = invocation.progress;
-  of_solving.edges = edge_sum(call.analysis.compatibility);
-  of_source.joint = joint_search({*matched}, of_solving);
-  const Source source = prepare_source(sequence, of_source);
-  const PlacedSource placed = placed_at(*matched, source, of_solving);
+  const SolveOptions of_solve{.edges = edge_sum(call.analysis.compatibility)};
+  const Source source =
+      prepare_source(sequence, call.source, joint_search({*matched}, of_solve), at_start);
+  const PlacedSource placed = placed_at(*matched, source, of_solve.axes, at_start);
   RegionSelector selector(source, call.regions, call.analysis);
-  Found found{selector(placed.source, *matched, of_solving), source.head_motion};
+  Found found{selector(placed.source, *matched, of_solve, context), source.head_motion};
   found.seconds = stopwatch.seconds();
   return found;
-}
-
-/// What is not made where regions are found on some of the vertices.
-void check_simplify(const Invocation& invocation) {
-  const Parameters& parameters = invocation.parameters;
-  if (!parameters.is_set("simplify")) return;
-  if (parameters.choice<RegionShape>("region") != RegionShape::disc) {
-    throw UsageError("--simplify: needs --region disc; the others need all vertices");
-  }
-  if (parameters.choice<Selector>("select") == Selector::transfer) {
-    throw UsageError("--simplify: has no effect with --select transfer");
-  }
-  if (invocation.find<Components>("components")) {
-    throw UsageError("--simplify: has no effect on --components, which are decomposed already");
-  }
-  const std::string reason = "components of all vertices are not made with --simplify";
-  refuse_options(parameters, {"component-fields"}, reason);
-  if (invocation.wants("components-out")) throw UsageError("--components-out: " + reason);
-}
-
-/// Options that the others leave without an effect, or that need more.
-void check_choice(const Invocation& invocation) {
-  check_selection(invocation);
-  check_given_components(invocation);
-  check_simplify(invocation);
-  const bool selects = invocation.parameters.choice<Selector>("select") == Selector::transfer;
-  const bool has_target = invocation.find<ModelData>("target") != nullptr;
-  if (selects && !has_target) {
-    throw UsageError("--select transfer: needs the target of the transfer, --target MODEL");
-  }
-  if (selects) return;
-  const std::string reason = "regions by energy do not depend on a target; use --select transfer";
-  if (has_target) throw UsageError("--target: " + reason);
-  refuse_options(invocation.parameters, {"markers", "index-base", "correspondence"}, reason);
 }
 
 /// What the script for ParaView opens: the main output.
@@ -185,19 +159,12 @@ std::filesystem::path series_of(const Invocation& invocation) {
 
 /// Refuses what the run cannot do, before it is done.
 RegionsCall read_regions_call(const Invocation& invocation) {
-  if (invocation.wants("paraview")) {
-    series_of(invocation);
-  } else {
-    refuse_options(invocation.parameters, {"up"}, "is for the script of --paraview");
-  }
-  check_choice(invocation);
+  if (invocation.wants("paraview")) series_of(invocation);
+  check_given_components(invocation);
   RegionsCall call =
-      regions_parameters(&invocation.get<FieldSequence>("sequence")).read(invocation.parameters);
+      regions_parameters().read(invocation.parameters, &invocation.get<FieldSequence>("sequence"));
   call.regions = with_most_discs(std::move(call.regions), invocation.parameters);
-  call.regions.notes = call.analysis.notes = warnings_of(invocation);
-  call.analysis.threads = invocation.threads;
-  call.analysis.ranks = invocation.ranks;
-  call.analysis.progress = invocation.progress;
+  call.source = described(std::move(call.source), invocation.input("sequence"));
   const Components* given = invocation.find<Components>("components");
   if (call.component_fields && given && given->support.size() == 0) {
     throw MismatchError(invocation.input("components").name +
@@ -208,16 +175,28 @@ RegionsCall read_regions_call(const Invocation& invocation) {
 }
 
 /// A decomposition of some of the vertices, and what chooses these.
-DecompositionPlan of_share(DecompositionPlan plan, const Invocation& invocation,
-                           const FrameSource& sequence) {
-  const double share = invocation.parameters.number("simplify");
-  plan.bytes = std::max(simplify_bytes(sequence), share * plan.bytes);
+DecompositionPlan of_share(double share, DecompositionPlan plan, const FrameSource& sequence,
+                           const AnalysisOptions& options, const Context& context) {
   // Discs are measured along the whole mesh.
-  if (invocation.parameters.choice<GeodesicMethod>("geodesics") == GeodesicMethod::exact) {
-    plan.bytes = std::max(plan.bytes, exact_distance_bytes(sequence.vertices(), invocation.threads,
-                                                           invocation.parameters.integer("k")));
-  }
+  const double measuring =
+      distance_bytes(options.distances.method, sequence.vertices(), options.count, context);
+  plan.bytes = std::max({simplify_bytes(sequence), share * plan.bytes, measuring});
   plan.scratch_bytes *= share;
+  return plan;
+}
+
+DecompositionPlan plan_of_regions(const Invocation& invocation) {
+  const FrameSource& sequence = *invocation.get<FieldSequence>("sequence").frames;
+  const RegionsCall call = regions_parameters().read(invocation.parameters);
+  if (call.regions.select == Selector::energy) {
+    const DecompositionPlan plan = analysis_plan(invocation, sequence, call.analysis);
+    if (!call.simplify) return plan;
+    return of_share(*call.simplify, plan, sequence, call.analysis, invocation.context);
+  }
+  DecompositionPlan plan;
+  if (const auto* target = invocation.find<ModelData>("target")) {
+    plan.bytes = selection_bytes(sequence, target->model.average());
+  }
   return plan;
 }
 
@@ -234,9 +213,10 @@ void foresee_regions(const Invocation& invocation) {
 
 Outcome run_regions(const Invocation& invocation) {
   const RegionsCall call = read_regions_call(invocation);
+  const Context context = within_memory(invocation);
   const Found found = in_command_terms(invocation.parameters, [&] {
-    return call.regions.select == Selector::transfer ? found_for_transfer(invocation, call)
-                                                     : found_by_energy(invocation, call);
+    return call.regions.select == Selector::transfer ? found_for_transfer(invocation, call, context)
+                                                     : found_by_energy(invocation, call, context);
   });
   const Regions& regions = found.regions;
   std::vector<Field> fields = fields_of(regions);
@@ -282,33 +262,18 @@ Operation regions_operation() {
                        {"paraview", DataKind::document,
                         "script that shows them by paraview --script=VIEW.py", true}};
   operation.outputs.back().extensions = {".py"};
-  operation.parameters = regions_parameters().declared();
-  const std::vector<Parameter> matching = pairing_parameters();
-  operation.parameters.insert(operation.parameters.end(), matching.begin(), matching.end());
+  operation.parameters =
+      concatenated<Parameter>({regions_parameters().declared(), pairing_parameters()});
+  operation.exclusions = regions_exclusions();
   operation.examples = {"regions takes/ -k 30 -o rois/take.pvd --paraview view.py",
                         "regions take.npy --coverage 0.8 --radius 12abs -o rois.json"};
   operation.measures = region_measures();
   operation.run = run_regions;
   operation.shared = true;
   operation.foresee = foresee_regions;
-  const auto plan = [](const Invocation& invocation) {
-    const FrameSource& sequence = *invocation.get<FieldSequence>("sequence").frames;
-    if (invocation.parameters.choice<Selector>("select") == Selector::energy) {
-      DecompositionPlan decomposition =
-          analysis_plan(invocation, sequence, invocation.parameters.integer("k"));
-      if (invocation.parameters.is_set("simplify"))
-        decomposition = of_share(decomposition, invocation, sequence);
-      return decomposition;
-    }
-    DecompositionPlan selection;
-    if (const auto* target = invocation.find<ModelData>("target")) {
-      selection.bytes = selection_bytes(sequence, target->model.average());
-    }
-    return selection;
-  };
-  operation.memory = [plan](const Invocation& invocation) { return plan(invocation).bytes; };
-  operation.scratch = [plan](const Invocation& invocation) {
-    return plan(invocation).scratch_bytes;
+  operation.memory = [](const Invocation& invocation) { return plan_of_regions(invocation).bytes; };
+  operation.scratch = [](const Invocation& invocation) {
+    return plan_of_regions(invocation).scratch_bytes;
   };
   return operation;
 }

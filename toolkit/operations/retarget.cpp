@@ -28,11 +28,10 @@ namespace mimetra {
 namespace {
 
 /// Options of a map's weights too; the others are about meshes.
-BoundParameters<SolveOptions> retarget_parameters() {
-  BoundParameters<SolveOptions> list;
-  return list.add(axes_parameters())
-      .add("smoothness", SolveOptions::kSmoothness, "time constant of smooth weights")
-      .add(&SolveOptions::blendshape, blendshape_parameters());
+BoundParameters<RetargetOptions> retarget_parameters() {
+  auto list = axes_parameters<RetargetOptions>();
+  return list.add("smoothness", RetargetOptions::kSmoothness, "time constant of smooth weights")
+      .add(blendshape_parameters<RetargetOptions>());
 }
 
 /// What comes of a call, by meshes or by a map.
@@ -48,31 +47,19 @@ struct Retargeted {
   std::string summary = {};
 };
 
-/// Refuses what the request cannot mean.
-void check_request(const Invocation& invocation) {
-  const bool source = invocation.find<ModelData>("source") != nullptr;
-  const bool target = invocation.find<ModelData>("target") != nullptr;
-  if (!invocation.find<Document>("map")) {
-    if (source && target) return;
-    throw UsageError(
-        "retarget: expected two models, SOURCE and TARGET, or what an earlier run kept of them "
-        "(--map FILE)");
-  }
-  if (source || target) {
-    throw UsageError("--map: it stands for SOURCE and TARGET; leave one or the other out");
-  }
-  if (invocation.wants("map-out")) {
-    throw UsageError("--map-out: a map is kept of meshes, and --map reads none");
-  }
-  for (const std::string name :
-       {"axes", "markers", "index-base", "ignore-files", "correspondence"}) {
-    if (!invocation.parameters.is_set(name)) continue;
-    throw UsageError("--" + name + ": it is about meshes, and --map reads none");
-  }
-  for (const std::string name : {"symmetry", "exclusive", "rules"}) {
-    if (!invocation.parameters.is_set(name)) continue;
-    throw UsageError("--" + name + ": weights by --map are bounded, and have no other rules");
-  }
+std::vector<Exclusion> retarget_exclusions() {
+  return concatenated<Exclusion>(
+      {{{{"map"},
+         {"source", "target"},
+         "it stands for SOURCE and TARGET; leave one or the other out"},
+        {{"map-out"}, {"map"}, "a map is kept of meshes, and --map reads none"},
+        {{"axes", "markers", "index-base", "ignore-files", "correspondence"},
+         {"map"},
+         "it is about meshes, and --map reads none"},
+        {{"symmetry", "exclusive", "rules"},
+         {"map"},
+         "weights by --map are bounded, and have no other rules"}},
+       pairing_exclusions()});
 }
 
 /// The weights and their times of those frames that are asked for, which drive `expressions`.
@@ -129,7 +116,7 @@ void drive_source(const Invocation& invocation, const WeightTrack& track, Retarg
 
 /// What a call asks for.
 struct RetargetCall {
-  SolveOptions solving;
+  RetargetOptions options;
   BlendshapeTransferOptions of_map;
   /// In place of two models.
   std::optional<Retargeting> map;
@@ -154,17 +141,18 @@ Retargeted read_map(const Invocation& invocation, const RetargetCall& call) {
 }
 
 /// The weights of a map, which keeps the rigs.
-Eigen::MatrixXd weights_by_map(const Retargeted& made, const RetargetCall& call) {
+Eigen::MatrixXd weights_by_map(const Retargeted& made, const RetargetCall& call,
+                               const Context& context) {
   const Eigen::VectorXd& times = call.track.times;
   return retargeted(
       *made.map, made.driving,
       times.size() > 0 ? times : default_times(static_cast<int>(call.track.weights.rows())),
-      call.of_map);
+      call.of_map, context);
 }
 
 Retargeted by_map(const Invocation& invocation, const RetargetCall& call) {
   Retargeted made = read_map(invocation, call);
-  made.weights = weights_by_map(made, call);
+  made.weights = weights_by_map(made, call, invocation.context.part(0, 0));
   return made;
 }
 
@@ -219,14 +207,10 @@ Retargeted by_meshes(const Invocation& invocation, const RetargetCall& call) {
   check_wanted(invocation, target);
   Retargeted made = std::move(driven.made);
   made.target_names = target.model.get().expressions().names;
-  RetargetOptions options;
+  RetargetOptions options = call.options;
   options.source_name = invocation.input("source").name;
-  options.solving = call.solving;
   options.keep_map = invocation.wants("map-out") || invocation.wants("matrix-out");
-  options.threads = invocation.threads;
-  options.progress = invocation.progress;
-  options.notes = warnings_of(invocation);
-  RetargetResult result = retarget(*driven.animation, target, options);
+  RetargetResult result = retarget(*driven.animation, target, options, invocation.context);
   made.weights = result.transferred.solution.weights();
   made.map = std::move(result.map);
   if (const auto& pairing = result.transferred.pairing) {
@@ -292,7 +276,8 @@ void add_weights(const Invocation& invocation, Retargeted& made) {
 /// How far the kept map's weights are from those of the meshes.
 void add_map(const Invocation& invocation, const RetargetCall& call, Retargeted& made) {
   if (made.by_map || !invocation.wants("map-out")) return;
-  const WeightDifference difference = difference_of(weights_by_map(made, call), made.weights);
+  const WeightDifference difference =
+      difference_of(weights_by_map(made, call, invocation.context.part(1, 1)), made.weights);
   made.report["map"] = json_of(difference);
   made.summary += "the map's weights differ from these by " + summary_of(difference) + '\n';
 }
@@ -344,12 +329,17 @@ void note_options(const Invocation& invocation) {
 }
 
 RetargetCall read_call(const Invocation& invocation) {
-  check_request(invocation);
+  const bool has_models = invocation.has_input("source") && invocation.has_input("target");
+  if (!has_models && !invocation.has_input("map")) {
+    throw UsageError(
+        "retarget: expected two models, SOURCE and TARGET, or what an earlier run kept of them "
+        "(--map FILE)");
+  }
   RetargetCall call;
-  call.solving = retarget_parameters().read(invocation.parameters);
-  call.of_map = call.solving.blendshape;
-  call.of_map.threads = invocation.threads;
-  call.of_map.smoothness = call.solving.smoothness;
+  call.options = retarget_parameters().read(invocation.parameters);
+  call.of_map.ridge = call.options.ridge;
+  call.of_map.sparsity = call.options.sparsity;
+  call.of_map.smoothness = call.options.smoothness;
   if (const auto* map = invocation.find<Document>("map")) {
     call.map = parse_retargeting(invocation.input("map").name, map->text);
   }
@@ -371,7 +361,8 @@ void foresee_retarget(const Invocation& invocation) {
   const std::vector<Target> targets = targets_of(driven.invocation);
   check_wanted(invocation, targets.front());
   check_rigs(*driven.animation, targets.front(), invocation.input("source").name);
-  check_targets(driven.invocation, targets, *driven.animation, call.solving);
+  check_targets(driven.invocation, targets, *driven.animation,
+                {.symmetry = call.options.symmetry, .exclusive = call.options.exclusive});
 }
 
 Outcome run_retarget(const Invocation& invocation) {
@@ -433,10 +424,9 @@ Operation declared_operation() {
 
 Operation retarget_operation() {
   Operation operation = declared_operation();
-  operation.parameters = retarget_parameters().declared();
-  for (const std::vector<Parameter>& more : {match_parameters(), frame_parameters().declared()}) {
-    operation.parameters.insert(operation.parameters.end(), more.begin(), more.end());
-  }
+  operation.parameters = concatenated<Parameter>(
+      {retarget_parameters().declared(), match_parameters(), frame_parameters().declared()});
+  operation.exclusions = retarget_exclusions();
   operation.examples = {
       "retarget actor/ double.glb --weights talk.csv -o talk_double.csv --map-out map.json",
       "retarget --map map.json --weights take.csv -o take_double.livelink.csv"};

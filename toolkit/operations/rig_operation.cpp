@@ -29,17 +29,6 @@ struct RigCall {
   static constexpr Option kEstimateWeights{"estimate_weights", &RigCall::estimate_weights};
 };
 
-/// Those of a vertex solve over all triangles.
-BoundParameters<SolveOptions> vertex_solve_parameters() {
-  BoundParameters<SolveOptions> list;
-  const BoundParameters<SolveOptions> all = solving_parameters();
-  for (const auto& entry : all.entries()) {
-    const std::string& name = entry.parameter.name;
-    if (name == "axes" || name == "triangle-weight") list.add(entry.parameter, entry.apply);
-  }
-  return list;
-}
-
 BoundParameters<ExampleRigOptions> example_fit_parameters() {
   using Options = ExampleRigOptions;
   BoundParameters<Options> list;
@@ -57,7 +46,8 @@ BoundParameters<ExampleRigOptions> example_fit_parameters() {
 BoundParameters<RigCall> rig_parameters() {
   BoundParameters<RigOptions> rig;
   rig.add(&RigOptions::examples, example_fit_parameters())
-      .add(&RigOptions::solving, vertex_solve_parameters());
+      .add(axes_parameters<RigOptions>())
+      .add(triangle_weight_parameters<RigOptions>());
   BoundParameters<RigCall> list;
   return list
       .add("examples", RigCall::kExamples,
@@ -137,18 +127,22 @@ std::vector<RigExample> examples_of(const Invocation& invocation, const RigCall&
   return examples;
 }
 
-/// Refuses options that nothing would look at.
+constexpr const char* kNoExamples = "there are no examples without --examples";
+
+std::vector<Exclusion> rig_exclusions() {
+  return concatenated<Exclusion>(
+      {{{{"estimate-weights", "rounds", "prior"}, {"!examples"}, kNoExamples},
+        {{"rounds"},
+         {"!estimate-weights"},
+         "no weights are looked for without --estimate-weights"}},
+       pairing_exclusions()});
+}
+
+/// Refuses options about examples if neither a folder nor the target's own expressions give any.
 void check_rig_options(const Invocation& invocation, const RigCall& call) {
-  if (call.examples) {
-    if (call.estimate_weights || !invocation.parameters.is_set("rounds")) return;
-    throw UsageError("--rounds: no weights are looked for without --estimate-weights");
-  }
-  const bool has_own = person_of(invocation.input("target")).expressions().size() > 0;
-  for (const std::string name :
-       {"estimate-weights", "rounds", "prior", "kappa", "theta", "share"}) {
-    const bool is_for_poses = name != "kappa" && name != "theta" && name != "share";
-    if (!invocation.parameters.is_set(name) || (has_own && !is_for_poses)) continue;
-    throw UsageError("--" + name + ": there are no examples without --examples");
+  if (call.examples || person_of(invocation.input("target")).expressions().size() > 0) return;
+  for (const std::string name : {"kappa", "theta", "share"}) {
+    if (invocation.parameters.is_set(name)) throw UsageError("--" + name + ": " + kNoExamples);
   }
 }
 
@@ -215,20 +209,17 @@ void foresee_rig(const Invocation& invocation) {
   const RigCall call = read_rig_call(invocation);
   examples_of(invocation, call);
   check_targets(invocation, targets_of(invocation),
-                *frame_of_each_expression(person_of(invocation.input("source"))), call.rig.solving);
+                *frame_of_each_expression(person_of(invocation.input("source"))), {});
 }
 
 Outcome run_rig(const Invocation& invocation) {
   const Stopwatch stopwatch;
-  RigCall call = read_rig_call(invocation);
+  const RigCall call = read_rig_call(invocation);
   const NamedData& target = invocation.input("target");
   const std::vector<RigExample> examples = examples_of(invocation, call);
-  call.rig.threads = invocation.threads;
-  call.rig.progress = invocation.progress;
-  call.rig.notes = warnings_of(invocation);
   Rig made = in_command_terms(invocation.parameters, [&] {
     return rig(person_of(invocation.input("source")), targets_of(invocation).front(), examples,
-               call.rig);
+               call.rig, invocation.context);
   });
   Outcome outcome;
   Json report = json_of(made, examples);
@@ -261,9 +252,9 @@ Operation rig_operation() {
       {"target", DataKind::model, "mesh, or model that has some of them, which it keeps"}};
   operation.outputs = {{"out", DataKind::model, "the target with all expressions"}};
   operation.outputs.front().paired = true;
-  operation.parameters = rig_parameters().declared();
-  const std::vector<Parameter> matching = pairing_parameters();
-  operation.parameters.insert(operation.parameters.end(), matching.begin(), matching.end());
+  operation.parameters =
+      concatenated<Parameter>({rig_parameters().declared(), pairing_parameters()});
+  operation.exclusions = rig_exclusions();
   operation.examples = {"rig actor/ double.ply -o double/",
                         "rig actor/ double.ply --examples double_scans/ -o double.glb"};
   operation.run = run_rig;

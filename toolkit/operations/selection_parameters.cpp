@@ -8,12 +8,9 @@
 namespace mimetra {
 
 const std::vector<std::string>& options_of_energy() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> all = {"region",           "coverage", "drop-rims",
-                                    "component-fields", "complete", "complete-limit"};
-    all.insert(all.end(), options_of_decomposition().begin(), options_of_decomposition().end());
-    return all;
-  }();
+  static const std::vector<std::string> names = concatenated<std::string>(
+      {{"region", "coverage", "drop-rims", "component-fields", "complete", "complete-limit"},
+       options_of_decomposition()});
   return names;
 }
 
@@ -24,16 +21,30 @@ const std::vector<std::string>& options_of_decomposition() {
   return names;
 }
 
+std::vector<Exclusion> selection_exclusions() {
+  return {
+      {options_of_decomposition(),
+       {"components"},
+       "has no effect on --components, which are decomposed already"},
+      {concatenated<std::string>({options_of_energy(), {"compat=splocs2013"}}),
+       {"select=transfer"},
+       "has no effect with --select transfer, which needs no decomposition"},
+      {{"components", "components-out"},
+       {"select=transfer"},
+       "there are no components with --select transfer"},
+      {{"select=transfer"},
+       {"space=vertex"},
+       "regions are chosen by what they tell of expressions, which --space vertex does not solve "
+       "for; use --select energy"}};
+}
+
 void check_given_components(const Invocation& invocation) {
   const auto* components = invocation.find<Components>("components");
-  if (!components) return;
-  const std::string reason = "has no effect on --components, which are decomposed already";
   const Parameters& parameters = invocation.parameters;
-  // The line that made them, with the components instead.
-  if (parameters.is_set("k") && parameters.integer("k") != components->count()) {
-    refuse_options(parameters, {"k"}, reason);
+  // The same number comes of the line that made them, with the components instead.
+  if (components && parameters.is_set("k") && parameters.integer("k") != components->count()) {
+    throw UsageError("-k: has no effect on --components, which are decomposed already");
   }
-  refuse_options(invocation.parameters, options_of_decomposition(), reason);
 }
 
 BoundParameters<RegionChoiceOptions> selection_parameters() {
@@ -63,57 +74,17 @@ RegionChoiceOptions with_most_discs(RegionChoiceOptions options, const Parameter
 
 void set_usual_border(const Invocation& invocation, SolveOptions& options) {
   static constexpr std::array kNames = {"falloff", "paint", "triangles", "anchor", "curve"};
-  const auto is_set = [&](const std::string& name) {
-    return invocation.parameters.find(name) && invocation.parameters.is_set(name);
-  };
+  const auto is_set = [&](const char* name) { return invocation.parameters.is_set(name); };
   const auto has_expressions = [](const NamedData& target) {
     return std::get<ModelData>(target.data).model.average().expressions().size() > 0;
   };
   const RegionData* given = invocation.find<RegionData>("regions");
   const bool has_border = given && given->regions.weights.size() > 0;
-  if (std::ranges::any_of(kNames, is_set) || has_border ||
-      options.vertex.outside == Outside::identity ||
+  if (std::ranges::any_of(kNames, is_set) || has_border || options.outside == Outside::identity ||
       std::ranges::any_of(invocation.inputs.at("target"), has_expressions)) {
     return;
   }
   options.falloff = SolveOptions::kBareFalloff;
-}
-
-void refuse_options(const Parameters& parameters, const std::vector<std::string>& names,
-                    const std::string& reason) {
-  for (const std::string& name : names) {
-    if (parameters.find(name) && parameters.is_set(name)) {
-      throw UsageError(parameters.find(name)->option() + ": " + reason);
-    }
-  }
-}
-
-void check_selection(const Invocation& invocation) {
-  const Parameters& parameters = invocation.parameters;
-  if (parameters.choice<Selector>("select") != Selector::transfer) return;
-  refuse_options(parameters, options_of_energy(),
-                 "has no effect with --select transfer, which needs no decomposition");
-  // The rest pose of the decomposition, where the source's has a name of its own.
-  if (parameters.find("source-rest")) {
-    refuse_options(parameters, {"rest"},
-                   "has no effect with --select transfer, which needs no decomposition; the "
-                   "source's undeformed shape is --source-rest");
-  }
-  if (parameters.choice<Compatibility>("compat") == Compatibility::splocs2013) {
-    throw UsageError(
-        "--compat splocs2013: has no effect with --select transfer, which needs no "
-        "decomposition");
-  }
-  if (invocation.find<Components>("components") || invocation.wants("components-out")) {
-    throw UsageError(
-        "--components, --components-out: there are no components with --select "
-        "transfer");
-  }
-  if (parameters.find("space") && parameters.choice<Space>("space") == Space::vertex) {
-    throw UsageError(
-        "--select transfer: regions are chosen by what they tell of expressions, "
-        "which --space vertex does not solve for; use --select energy");
-  }
 }
 
 }  // namespace mimetra

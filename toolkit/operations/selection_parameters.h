@@ -19,20 +19,15 @@ const std::vector<std::string>& options_of_energy();
 /// Those of them, but for -k, that the decomposition depends on.
 const std::vector<std::string>& options_of_decomposition();
 
-/// Throws UsageError where the call is given components, and options of their decomposition, or
-/// another number of them.
-void check_given_components(const Invocation& invocation);
+/// Exclusions of a decomposition's options by --components and by --select transfer, and of
+/// --select transfer by --space vertex.
+std::vector<Exclusion> selection_exclusions();
 
-/// Throws UsageError where options of the call exclude each other or would have no effect: those of
-/// a decomposition where regions are chosen for the transfer, and vertices to solve for.
-void check_selection(const Invocation& invocation);
+/// Throws UsageError if the call is given components, and -k asks for another number of them.
+void check_given_components(const Invocation& invocation);
 
 /// Lets regions fade out where no target has expressions and no option says how they end: a hard
 /// border would tear the mesh.
 void set_usual_border(const Invocation& invocation, SolveOptions& options);
-
-/// Throws UsageError where one of the options is set, with the reason: "there are no regions".
-void refuse_options(const Parameters& parameters, const std::vector<std::string>& names,
-                    const std::string& reason);
 
 }  // namespace mimetra

@@ -75,14 +75,13 @@ Outcome run_simplify(const Invocation& invocation) {
   const NamedData& input = invocation.input("sequence");
   const auto& given = std::get<FieldSequence>(input.data);
   warn_of_lost_expressions(invocation, *given.frames, KeptInScenes::no);
-  SimplifyOptions options = simplify_parameters().read(invocation.parameters);
-  options.threads = invocation.threads;
-  options.progress = part_of(invocation.progress, 0, kChoosing);
-  const Simplification made = simplify(*given.frames, options);
+  const SimplifyOptions options = simplify_parameters().read(invocation.parameters);
+  const Simplification made =
+      simplify(*given.frames, options, invocation.context.part(0, kChoosing));
   warn_of(made, given, options.share, invocation);
-  FieldSequence simplified = held_like(
-      given, renumbered(given.frames, made.connectivity, made.vertices),
-      {.threads = invocation.threads, .progress = part_of(invocation.progress, kChoosing, 1)});
+  FieldSequence simplified =
+      held_like(given, renumbered(given.frames, made.connectivity, made.vertices),
+                invocation.context.part(kChoosing, 1));
   for (const Field& field : given.fields) {
     if (field.location != Field::Location::vertices) continue;
     simplified.fields.push_back(renumbered(field, made.vertices));

@@ -27,8 +27,7 @@ Outcome run_subdivide(const Invocation& invocation) {
   warn_of_lost_expressions(invocation, *given.frames, KeptInScenes::no);
   const SubdivideOptions options = subdivide_parameters().read(invocation.parameters);
   const Subdivision finer = subdivide(given.frames->rest(), given.frames->connectivity(), options);
-  FieldSequence made = held_like(given, subdivided(given.frames, finer),
-                                 {.threads = invocation.threads, .progress = invocation.progress});
+  FieldSequence made = held_like(given, subdivided(given.frames, finer), invocation.context);
   for (const Field& field : given.fields) {
     if (field.location == Field::Location::vertices && !field.integer) {
       made.fields.push_back({field.name, field.location, finer.weights * field.values});

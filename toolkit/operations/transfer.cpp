@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 
 #include <nlohmann/json.hpp>
 
@@ -26,44 +25,62 @@ namespace mimetra {
 
 namespace {
 
-BoundParameters<TransferOptions> transfer_parameters(const FieldSequence* source = nullptr) {
+const BoundParameters<TransferOptions>& transfer_parameters() {
   using Options = TransferOptions;
-  const FrameSource* sequence = source ? source->frames.get() : nullptr;
-  BoundParameters<Options> list;
-  return list
-      .add("full", Options::kFull,
-           "use all triangles instead of regions; the default for meshes without expressions if no "
-           "option asks for regions")
-      .brief("use all triangles instead of regions")
-      .add("head-motion", Options::kHeadMotion,
-           "give the motion that --align took out back to the target, or drop it")
-      .brief("motion that --align took")
-      .add(&Options::regions, region_parameters())
-      .add(&Options::regions, completion_parameters())
-      .add(&Options::analysis, count_parameters())
-      .add(&Options::analysis, analysis_rest_parameters(sequence))
-      .add(&Options::analysis, analysis_parameters(source))
-      .add(&Options::source, alignment_parameters(sequence))
-      .add(&Options::source, source_rest_parameters(sequence))
-      .add(&Options::solving, solving_parameters());
+  static const auto list =
+      BoundParameters<Options>()
+          .add("full", Options::kFull,
+               "use all triangles instead of regions; the default for meshes without expressions "
+               "if no option asks for regions")
+          .brief("use all triangles instead of regions")
+          .add("head-motion", Options::kHeadMotion,
+               "give the motion that --align took out back to the target, or drop it")
+          .brief("motion that --align took")
+          .add(&Options::regions, region_parameters())
+          .add(&Options::regions, completion_parameters())
+          .add(&Options::analysis, count_parameters())
+          .add(&Options::analysis, analysis_rest_parameters())
+          .add(&Options::analysis, analysis_parameters())
+          .add(&Options::source, alignment_parameters())
+          .add(&Options::source, source_rest_parameters())
+          .add(&Options::solve, solving_parameters());
+  return list;
+}
+
+const std::vector<Exclusion>& transfer_exclusions() {
+  static const std::string no_choice = "no regions are looked for with --full or --regions";
+  static const auto list = concatenated<Exclusion>(
+      {paint_exclusions(),
+       solving_exclusions(),
+       {{{"regions"}, {"full"}, "--full takes all triangles; leave one of them out"},
+        {{"falloff", "per-region", "regions-out"}, {"full"}, "there are no regions with --full"},
+        {concatenated<std::string>({{"only", "without", "select", "triangles", "drop-rims",
+                                     "region", "coverage", "k", "components"},
+                                    options_of_decomposition()}),
+         {"full", "regions"},
+         no_choice},
+        {{"radius", "complete", "complete-limit"}, {"full"}, no_choice},
+        {{"components-out"},
+         {"full", "regions"},
+         "there are no components with --full or --regions"}},
+       selection_exclusions(),
+       pairing_exclusions()});
+  return list;
 }
 
 const BlendshapeModel& model_of(const NamedData& target) {
   return std::get<ModelData>(target.data).model.average();
 }
 
+/// True if an option, input or output of the call is refused beside --full.
 bool asks_for_regions(const Invocation& invocation) {
-  const Parameters& parameters = invocation.parameters;
-  const auto is_set = [&](const std::string& name) {
-    return parameters.find(name) && parameters.is_set(name);
-  };
-  static constexpr std::array kNames = {
-      "k",         "coverage", "radius",   "only",           "without", "select",     "triangles",
-      "drop-rims", "region",   "complete", "complete-limit", "falloff", "per-region", "paint"};
-  return std::ranges::any_of(kNames, is_set) ||
-         std::ranges::any_of(options_of_decomposition(), is_set) ||
-         invocation.find<RegionData>("regions") || invocation.find<Components>("components") ||
-         invocation.wants("regions-out") || invocation.wants("components-out");
+  Parameters with_full = invocation.parameters;
+  with_full.set("full", true);
+  return refusal(transfer_exclusions(), with_full,
+                 [&invocation](const std::string& name) {
+                   return invocation.has_input(name) || invocation.wants(name);
+                 })
+      .has_value();
 }
 
 /// All triangles, because the call says so, or by default: without expressions to solve for, what
@@ -80,9 +97,9 @@ bool takes_all_triangles(const Invocation& invocation) {
 TransferOptions options_of(const Invocation& invocation) {
   const NamedData& source = invocation.input("source");
   TransferOptions options =
-      transfer_parameters(&std::get<FieldSequence>(source.data)).read(invocation.parameters);
+      transfer_parameters().read(invocation.parameters, &std::get<FieldSequence>(source.data));
   options.full = takes_all_triangles(invocation);
-  if (!options.full) set_usual_border(invocation, options.solving);
+  if (!options.full) set_usual_border(invocation, options.solve);
   options.source = described(std::move(options.source), source);
   options.regions = with_most_discs(std::move(options.regions), invocation.parameters);
   if (auto painted = painted_region_of(invocation)) {
@@ -92,10 +109,6 @@ TransferOptions options_of(const Invocation& invocation) {
   } else if (auto components = given_components(invocation)) {
     options.given = std::move(*components);
   }
-  options.threads = invocation.threads;
-  options.ranks = invocation.ranks;
-  options.progress = invocation.progress;
-  options.notes = warnings_of(invocation);
   return options;
 }
 
@@ -135,7 +148,7 @@ Json report_of(const NamedData& target, const TransferredTarget& transferred, bo
     if (has_own_regions) json["regions"] = report_of(*regions);
   }
   if (weights.size() > 0) {
-    json["weight"] = weights_report(weights, parameters, options.solving.falloff);
+    json["weight"] = weights_report(weights, parameters, options.solve.falloff);
     json["de_inside"] = error.de_inside ? Json(*error.de_inside) : Json(nullptr);
   }
   if (solution.regional) {
@@ -166,40 +179,30 @@ bool looks_for_regions(const Invocation& invocation) {
          !invocation.parameters.optional_text("paint");
 }
 
+/// Refuses options that would change regions whose vertices have weights.
+void check_given_weights(const Invocation& invocation) {
+  const auto* given = invocation.find<RegionData>("regions");
+  if (!given || given->regions.weights.size() == 0) return;
+  const std::string& name = invocation.input("regions").name;
+  if (invocation.parameters.flag("per-region")) {
+    throw UsageError("--per-region: " + name +
+                     " holds weights of vertices, which say how much of the motion each takes; "
+                     "weights of each region move the whole face");
+  }
+  for (const std::string option : {"complete", "complete-limit"}) {
+    if (!invocation.parameters.is_set(option)) continue;
+    throw UsageError("--" + option + ": " + name +
+                     " holds weights of vertices and is taken as it is");
+  }
+}
+
 /// Refuses outputs that this request cannot make, before anything is computed.
-void check_outputs(const Invocation& invocation) {
-  TransferOptions options = transfer_parameters().read(invocation.parameters);
-  options.full = takes_all_triangles(invocation);
-  check_paint(invocation);
+void check_outputs(const Invocation& invocation, const TransferOptions& options) {
+  check_given_weights(invocation);
   check_solving(invocation);
-  if (options.full) {
-    if (invocation.find<RegionData>("regions")) {
-      throw UsageError("--regions: --full takes all triangles; leave one of them out");
-    }
-    refuse_options(invocation.parameters, {"falloff"}, "there are no regions with --full");
-    if (options.solving.per_region) {
-      throw UsageError("--per-region: there are no regions with --full");
-    }
-  }
-  if (invocation.wants("regions-out") && options.full) {
-    throw UsageError("--regions-out: there are no regions with --full");
-  }
-  const bool chooses = looks_for_regions(invocation);
-  if (!chooses) {
-    const std::string reason = "no regions are looked for with --full or --regions";
-    refuse_options(
-        invocation.parameters,
-        {"only", "without", "select", "triangles", "drop-rims", "region", "coverage", "k"}, reason);
-    refuse_options(invocation.parameters, options_of_decomposition(), reason);
-    if (options.full) {
-      refuse_options(invocation.parameters, {"radius", "complete", "complete-limit"}, reason);
-    }
-    if (invocation.find<Components>("components")) throw UsageError("--components: " + reason);
-  }
   check_given_components(invocation);
-  check_selection(invocation);
-  if (chooses && has_own_regions(options.regions) && invocation.wants("regions-out") &&
-      invocation.inputs.at("target").size() > 1) {
+  if (looks_for_regions(invocation) && has_own_regions(options.regions) &&
+      invocation.wants("regions-out") && invocation.inputs.at("target").size() > 1) {
     const std::string reason = options.regions.select == Selector::transfer
                                    ? "with --select transfer each target has"
                                    : "with --triangles discs of --complete take the place of "
@@ -208,31 +211,36 @@ void check_outputs(const Invocation& invocation) {
                      " regions of its own; name one target, or take the regions of one for all "
                      "(--regions)");
   }
-  if (invocation.wants("components-out") && !chooses) {
-    throw UsageError("--components-out: there are no components with --full or --regions");
-  }
   if (!invocation.wants("weights-out")) return;
   for (const NamedData& target : invocation.inputs.at("target")) {
-    if (solves_for_vertices(model_of(target), options.solving.space)) {
+    if (solves_for_vertices(model_of(target), options.solve.space)) {
       throw UsageError("--weights-out: " + target.name + " is solved for vertices, not weights");
     }
-    if (options.solving.per_region) check_no_live_link(invocation, "weights-out");
+    if (options.solve.per_region) check_no_live_link(invocation, "weights-out");
     check_live_link(invocation, "weights-out", model_of(target).expressions().names);
   }
 }
 
+/// The call's options. Throws and warns before anything is computed.
+TransferOptions checked_options(const Invocation& invocation) {
+  const NamedData& source = invocation.input("source");
+  warn_of_guessed_rate(invocation, source.name,
+                       std::get<FieldSequence>(source.data).frames->times_are_known());
+  TransferOptions options = options_of(invocation);
+  check_outputs(invocation, options);
+  return options;
+}
+
 void foresee_transfer(const Invocation& invocation) {
-  check_outputs(invocation);
   const FrameSource& source = *invocation.get<FieldSequence>("source").frames;
-  warn_of_guessed_rate(invocation, invocation.input("source").name, source.times_are_known());
-  const TransferOptions options = options_of(invocation);
+  const TransferOptions options = checked_options(invocation);
   const auto* regions = std::get_if<GivenRegions>(&options.given);
   if (regions) check_regions(*regions, source);
-  check_border(invocation, regions, options.solving);
+  check_border(invocation, regions, options.solve);
   if (const auto* components = std::get_if<GivenComponents>(&options.given)) {
     check_components(*components, source);
   }
-  check_targets(invocation);
+  check_targets(invocation, targets_of(invocation), source, options.solve);
 }
 
 /// What each target's results are, in the order of the targets.
@@ -241,6 +249,7 @@ void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
   const std::vector<NamedData>& targets = invocation.inputs.at("target");
   const auto paths = invocation.wanted.find("out");
   const bool is_written = paths != invocation.wanted.end() && !paths->second.empty();
+  const Context at_end = invocation.context.part(1, 1).without_ranks();
   Json reports = Json::array();
   for (std::size_t t = 0; t < targets.size(); ++t) {
     TransferredTarget& transferred = result.targets[t];
@@ -260,8 +269,7 @@ void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
       outcome.outputs["weights-out"].push_back(weights_of(targets[t], solution));
     }
     const FieldSequence& source = invocation.get<FieldSequence>("source");
-    FieldSequence made =
-        held_like(source, std::move(solution.sequence), {.threads = invocation.threads});
+    FieldSequence made = held_like(source, std::move(solution.sequence), at_end);
     std::vector<NamedData>& all = outcome.outputs["out"];
     all.push_back({targets[t].name, FieldSequence()});
     NamedData& out = all.back();
@@ -297,12 +305,11 @@ void add_regions(Outcome& outcome, Json& report, const Invocation& invocation,
 
 Outcome run_transfer(const Invocation& invocation) {
   const Stopwatch stopwatch;
-  check_outputs(invocation);
   const FrameSource& source = *invocation.get<FieldSequence>("source").frames;
-  warn_of_guessed_rate(invocation, invocation.input("source").name, source.times_are_known());
-  const TransferOptions options = options_of(invocation);
-  TransferResult result = in_command_terms(
-      invocation.parameters, [&] { return transfer(source, targets_of(invocation), options); });
+  const TransferOptions options = checked_options(invocation);
+  TransferResult result = in_command_terms(invocation.parameters, [&] {
+    return transfer(source, targets_of(invocation), options, within_memory(invocation));
+  });
   Outcome outcome;
   Json report = Json::object();
   add_targets(outcome, report, invocation, options, result);
@@ -316,12 +323,6 @@ Outcome run_transfer(const Invocation& invocation) {
   return outcome;
 }
 
-/// True where the run decomposes the source to find regions.
-bool looks_for_components(const Invocation& invocation) {
-  return looks_for_regions(invocation) && !invocation.find<Components>("components") &&
-         invocation.parameters.choice<Selector>("select") == Selector::energy;
-}
-
 /// How many regions there are, or may be.
 int region_count(const Invocation& invocation, const TransferOptions& options) {
   if (const RegionData* given = invocation.find<RegionData>("regions")) {
@@ -330,37 +331,35 @@ int region_count(const Invocation& invocation, const TransferOptions& options) {
   if (const Components* components = invocation.find<Components>("components")) {
     return components->count();
   }
-  return options.analysis.decomposition.count;
+  return options.analysis.count;
 }
 
-/// Of the decomposition; nothing where there is none.
-DecompositionPlan plan_of_transfer(const Invocation& invocation) {
-  if (!looks_for_components(invocation)) return {};
-  return analysis_plan(
-      invocation, *invocation.get<FieldSequence>("source").frames,
-      transfer_parameters().read(invocation.parameters).analysis.decomposition.count);
+/// The plan of the decomposition; empty if the run does not decompose the source to find regions.
+DecompositionPlan plan_of_transfer(const Invocation& invocation, const TransferOptions& options) {
+  if (!looks_for_regions(invocation) || options.regions.select == Selector::transfer) return {};
+  return analysis_plan(invocation, *invocation.get<FieldSequence>("source").frames,
+                       options.analysis);
 }
 
 /// Decomposition, then one target after the other, whose results are kept.
 double memory_of_transfer(const Invocation& invocation) {
   const FieldSequence& held = invocation.get<FieldSequence>("source");
-  TransferOptions options = transfer_parameters().read(invocation.parameters);
-  options.solving.threads = invocation.threads;
+  const TransferOptions options = transfer_parameters().read(invocation.parameters);
   const FrameSource& frames = *held.frames;
   double solutions = stored_bytes(frames), most_selection = 0;
   for (const NamedData& target : invocation.inputs.at("target")) {
-    solutions += solution_bytes(frames, model_of(target), options.solving);
+    solutions += solution_bytes(frames, model_of(target), options.solve, invocation.context);
     if (options.regions.select == Selector::transfer) {
       most_selection = std::max(most_selection, selection_bytes(frames, model_of(target)));
     }
-    if (options.solving.per_region) {
+    if (options.solve.per_region) {
       solutions += regional_bytes(frames, model_of(target), region_count(invocation, options),
-                                  options.solving);
+                                  invocation.context);
     }
     // Results of a source in memory are there, too.
     if (held.is_in_memory()) solutions += frame_bytes(frames);
   }
-  return std::max(plan_of_transfer(invocation).bytes, solutions + most_selection);
+  return std::max(plan_of_transfer(invocation, options).bytes, solutions + most_selection);
 }
 
 }  // namespace
@@ -383,10 +382,9 @@ Operation transfer_operation() {
       {"weights-out", DataKind::table, "blendshape weights", true, true}};
   operation.outputs.front().paired = true;
   operation.outputs.back().weights = true;
-  operation.parameters = transfer_parameters().declared();
-  operation.parameters.push_back(paint_parameter());
-  const std::vector<Parameter> matching = match_parameters();
-  operation.parameters.insert(operation.parameters.end(), matching.begin(), matching.end());
+  operation.parameters = concatenated<Parameter>(
+      {transfer_parameters().declared(), {paint_parameter()}, match_parameters()});
+  operation.exclusions = transfer_exclusions();
   operation.examples = {
       "transfer takes/smile_%04d.obj actor/ -k 30 -o actor_smile/ --regions-out rois/smile.pvd",
       "transfer take.npy actor@identity007=2 double/ --full -o results/"};
@@ -395,7 +393,8 @@ Operation transfer_operation() {
   operation.shared = true;
   operation.memory = memory_of_transfer;
   operation.scratch = [](const Invocation& invocation) {
-    return plan_of_transfer(invocation).scratch_bytes;
+    const TransferOptions options = transfer_parameters().read(invocation.parameters);
+    return plan_of_transfer(invocation, options).scratch_bytes;
   };
   operation.foresee = foresee_transfer;
   return operation;

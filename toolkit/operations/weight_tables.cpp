@@ -19,7 +19,7 @@ constexpr const char* kLiveLink = ".livelink.csv";
 
 using Paths = std::vector<std::filesystem::path>;
 
-ReadValue read_weight_table(const std::string& text, const ReadRequest&) {
+ReadValue read_weight_table(const std::string& text, const ReadRequest&, const Context&) {
   const WeightTrack track = read_weights(text);
   ReadValue read{{text, weight_table(track)}, {text}};
   for (const std::string& note : track.notes) read.notes.push_back(text + ": " + note);
@@ -52,7 +52,7 @@ LiveLinkText live_link_of(const Data& data, const std::filesystem::path& target)
   }
 }
 
-Paths write_live_link(const Data& data, const WriteRequest& request) {
+Paths write_live_link(const Data& data, const WriteRequest& request, const Context&) {
   return write_text(request, live_link_of(data, request.target).text);
 }
 
@@ -74,7 +74,7 @@ void check_names(const Table& weights, bool timed, const std::filesystem::path& 
 
 /// A format of tables, or of a sequence's weights as such a table.
 template <std::string (Table::*Text)() const>
-Paths write_table(const Data& data, const WriteRequest& request) {
+Paths write_table(const Data& data, const WriteRequest& request, const Context&) {
   const auto* given = std::get_if<Table>(&data);
   const Table table = given ? *given : weight_table(track_of(data, request.target));
   const bool timed = !table.columns.empty() && table.columns.front() == kTimeColumn;

@@ -79,10 +79,11 @@ struct StripOptions {
   static constexpr Option kMaximum{"maximum", &StripOptions::maximum, {.minimum = 1e-300}};
   static constexpr Option kTileHeight{
       "tile_height", &StripOptions::tile_height, {.minimum = 16, .maximum = 4096}, "pixels"};
+  static constexpr Option kLetters{"letters", &StripOptions::letters, {.minimum = 0}, "pixels"};
   static constexpr Option kUnit{"unit", &StripOptions::unit};
   static constexpr Option kEdges{"edges", &StripOptions::edges};
   static constexpr auto declared() {
-    return std::tuple(kLayout, kColumns, kFrames, kMaximum, kTileHeight);
+    return std::tuple(kLayout, kColumns, kFrames, kMaximum, kTileHeight, kLetters, kEdges);
   }
 };
 

@@ -13,21 +13,24 @@ namespace mimetra {
 
 namespace {
 
-std::vector<std::filesystem::path> write_picture(const Data& data, const WriteRequest& request) {
+std::vector<std::filesystem::path> write_picture(const Data& data, const WriteRequest& request,
+                                                 const Context&) {
   return write_text(request, png_of(std::get<Pictures>(data).draw(0)));
 }
 
-std::vector<std::filesystem::path> write_table(const Data& data, const WriteRequest& request) {
+std::vector<std::filesystem::path> write_table(const Data& data, const WriteRequest& request,
+                                               const Context&) {
   return write_text(request, png_of(draw({chart_of(std::get<Table>(data))})));
 }
 
-std::vector<std::filesystem::path> write_pictures(const Data& data, const WriteRequest& request) {
+std::vector<std::filesystem::path> write_pictures(const Data& data, const WriteRequest& request,
+                                                  const Context& context) {
   const auto& pictures = std::get<Pictures>(data);
   PendingOutputs outputs(request.overwrite, request.inputs, request.together);
   const std::filesystem::path folder = outputs.add(request.target, PendingOutput::Kind::folder);
   const auto name = [&](int i) { return frame_name(i, pictures.count, ".png"); };
   const auto write_one = [&](int i) { write_bytes(folder / name(i), png_of(pictures.draw(i))); };
-  parallel_for(pictures.count, request.threads, write_one, request.progress);
+  parallel_for(pictures.count, write_one, context);
   for (const auto& [extra, content] : request.extra) write_bytes(folder / extra, content);
   outputs.commit();
   std::vector<std::filesystem::path> files;

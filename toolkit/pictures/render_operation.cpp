@@ -104,7 +104,7 @@ void warn_of_sizes(const std::vector<NamedData>& inputs, const Invocation& invoc
 Outcome run_render(const Invocation& invocation) {
   warn_of_sizes(invocation.inputs.at("input"), invocation);
   const Sheet sheet = sheet_of(invocation);
-  Image image = draw(sheet, {.progress = invocation.progress});
+  Image image = draw(sheet, invocation.context);
   Outcome outcome;
   Json bars = Json::array();
   for (const TileRow& row : sheet.rows) {

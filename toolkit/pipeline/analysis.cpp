@@ -65,29 +65,22 @@ double largest_frame_extent(const FrameSource& sequence) {
 /// reported: well above float32 rounding, well below what one sees.
 constexpr double kPartingShare = 1e-4;
 
-void note_parting(const FrameSource& sequence, const AnalysisOptions& options) {
+void note_parting(const FrameSource& sequence, const AnalysisOptions& options,
+                  const Context& context) {
   if (options.distances.welding == Welding::none) return;
   const auto parting =
       parting_vertices(sequence, Weld::exact(sequence.rest()), kPartingShare * sequence.diameter(),
-                       {.threads = options.threads});
+                       context.without_ranks());
   if (parting.empty()) return;
-  note(options.notes,
-       std::to_string(parting.size()) +
-           " vertices coincide at rest and part later (the first is vertex " +
-           std::to_string(parting.front()) + "); distances pass from one to the other",
-       Topic::parting_vertices);
+  context.note(std::to_string(parting.size()) +
+                   " vertices coincide at rest and part later (the first is vertex " +
+                   std::to_string(parting.front()) + "); distances pass from one to the other",
+               Topic::parting_vertices);
 }
 
 int almost_welded_at(const Positions& rest, const Triangles& triangles,
                      const DistanceOptions& options) {
   return options.welding == Welding::exact ? almost_welded_vertices(rest, triangles) : 0;
-}
-
-DistanceOptions distance_options(const AnalysisOptions& options) {
-  DistanceOptions distances = options.distances;
-  distances.threads = options.threads;
-  distances.notes = options.notes;
-  return distances;
 }
 
 void check_inside(const std::vector<bool>& inside, int vertices) {
@@ -101,19 +94,14 @@ void check_inside(const std::vector<bool>& inside, int vertices) {
   }
 }
 
-Components decomposed(const FrameSource& work, const DecompositionOptions& options,
-                      const Ranks* ranks) {
-  return ranks ? decompose(work, options, *ranks) : decompose(work, options);
-}
-
 Components decomposed_inside(const std::shared_ptr<const FrameSource>& work,
                              const std::vector<bool>& inside, DecompositionOptions options,
-                             const Ranks* ranks) {
-  if (inside.empty()) return decomposed(*work, options, ranks);
+                             const Context& context) {
+  if (inside.empty()) return decompose(*work, options, context);
   const Cutout cutout(inside);
   options.distances = cutout.of(options.distances);
   if (!options.parts.empty()) options.parts.of_vertex = cutout.of(options.parts.of_vertex);
-  return cutout.put_back(decomposed(*cutout.of(work), options, ranks), *work);
+  return cutout.put_back(decompose(*cutout.of(work), options, context), *work);
 }
 
 /// The vertices inside that are some of a triangle with area; empty for all.
@@ -143,11 +131,11 @@ std::vector<bool> parts_with(const std::vector<bool>& inside, const SurfaceParts
 }
 
 MovingParts noted_moving_parts(const std::vector<VertexIndex>& moving, const Positions& rest,
-                               const Triangles& triangles, const Notes& notes) {
+                               const Triangles& triangles, const Context& context) {
   MovingParts found = moving_parts(moving, rest, triangles);
   if (found.is_section) {
-    note(notes, "a small section of a connected part moves; lengths are shares of " +
-                    readable(found.diameter) + ", 1.5 times its diameter");
+    context.note("a small section of a connected part moves; lengths are shares of " +
+                 readable(found.diameter) + ", 1.5 times its diameter");
   }
   return found;
 }
@@ -167,22 +155,40 @@ Components centered_inside(Components components, const std::vector<bool>& insid
 
 }  // namespace
 
+DecompositionOptions decomposition_options(const AnalysisOptions& options) {
+  DecompositionOptions decomposition{.count = options.count,
+                                     .sparsity = options.sparsity,
+                                     .rho = options.rho,
+                                     .iterations = options.iterations,
+                                     .admm_iterations = options.admm_iterations,
+                                     .tolerance = options.tolerance,
+                                     .nonnegative = options.nonnegative,
+                                     .basis_tolerance = options.basis_tolerance,
+                                     .precision = options.precision};
+  if (options.compatibility == Compatibility::none) return decomposition;
+  decomposition.iterations =
+      options.iterations.value_or(DecompositionOptions::kReferenceIterations);
+  decomposition.tolerance = 0;
+  decomposition.sign_rule = SignRule::literal;
+  decomposition.scale = MotionScale::standard_deviation;
+  decomposition.returned = ReturnedIterate::last;
+  return decomposition;
+}
+
 Eigen::VectorXd motion_on_vertices(const FrameSource& sequence, const std::vector<bool>& inside,
-                                   const BlockOptions& options) {
+                                   const Context& context) {
   // So many parts for any number of threads: their sums are the same bytes.
   constexpr int kParts = 8;
   const int frames = sequence.frames();
   std::vector<Eigen::VectorXd> sums(kParts, Eigen::VectorXd::Zero(sequence.vertices()));
-  parallel_for(
-      kParts, options.threads,
-      [&](int part) {
-        const int first = frames * part / kParts, end = frames * (part + 1) / kParts;
-        for (int f = first; f < end; ++f) {
-          const FrameBlock block(sequence, f, 1);
-          sums[part] += (block.frame(0) - sequence.rest()).rowwise().squaredNorm();
-        }
-      },
-      options.progress);
+  const auto add_part = [&](int part) {
+    const int first = frames * part / kParts, end = frames * (part + 1) / kParts;
+    for (int f = first; f < end; ++f) {
+      const FrameBlock block(sequence, f, 1);
+      sums[part] += (block.frame(0) - sequence.rest()).rowwise().squaredNorm();
+    }
+  };
+  parallel_for(kParts, add_part, context);
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(sequence.vertices());
   for (const Eigen::VectorXd& sum : sums) motion += sum;
   for (std::size_t v = 0; v < inside.size(); ++v) {
@@ -218,22 +224,22 @@ PartWeights part_weights(const Positions& rest, const Triangles& triangles,
 }
 
 SurfaceDistances distances_along(const Positions& rest, const Triangles& triangles,
-                                 const DistanceOptions& options) {
+                                 const DistanceOptions& options, const Context& context) {
   check_options(options);
   SurfaceDistances distances(rest, triangles, weld_of(rest, options.welding), options.method,
-                             options.threads);
+                             context);
   if (const int places = almost_welded_at(rest, triangles, options)) {
-    note(options.notes, described_almost_welded(places));
+    context.note(described_almost_welded(places));
   }
   if (distances.degenerate_triangles() > 0) {
-    note(options.notes, std::to_string(distances.degenerate_triangles()) +
-                            " triangles without area were left out of the geodesic distances");
+    context.note(std::to_string(distances.degenerate_triangles()) +
+                 " triangles without area were left out of the geodesic distances");
   }
   if (!distances.vertices_without_face().empty()) {
-    note(options.notes, std::to_string(distances.vertices_without_face().size()) +
-                            " vertices belong to no triangle with area, the first is vertex " +
-                            std::to_string(distances.vertices_without_face().front()) +
-                            "; they are in no region, and their motion counts nowhere");
+    context.note(std::to_string(distances.vertices_without_face().size()) +
+                 " vertices belong to no triangle with area, the first is vertex " +
+                 std::to_string(distances.vertices_without_face().front()) +
+                 "; they are in no region, and their motion counts nowhere");
   }
   return distances;
 }
@@ -247,7 +253,7 @@ SupportRange support_range(const Length& d_min, const Length& d_max, double diam
 }
 
 int component_count(const FrameSource& sequence, double size, const AnalysisOptions& options) {
-  const int asked = options.decomposition.count;
+  const int asked = options.count;
   if (options.compatibility != Compatibility::none) return asked;
   const double reach = options.d_min.in(size);
   const double disc = std::numbers::pi * reach * reach;
@@ -264,23 +270,25 @@ int component_count(const FrameSource& sequence, double size, const AnalysisOpti
   return most < asked ? std::max(1, static_cast<int>(most)) : asked;
 }
 
-Analysis analyse(const Source& source, const AnalysisOptions& options) {
+Analysis analyse(const Source& source, const AnalysisOptions& options, const Context& context) {
   const Stopwatch stopwatch;
   check_options(options);
+  const bool reference = options.compatibility != Compatibility::none;
+  if (reference && options.tolerance != DecompositionOptions::kUsualTolerance) {
+    throw std::invalid_argument("tolerance: a compatibility runs all iterations");
+  }
   const std::shared_ptr<const FrameSource> sequence = work_of(source, options);
   const FrameSource& work = *sequence;
-  DecompositionOptions decomposition = options.decomposition;
-  if (decomposition.count > work.vertices()) {
-    throw OptionError(Topic::component_count, std::to_string(decomposition.count) +
+  if (options.count > work.vertices()) {
+    throw OptionError(Topic::component_count, std::to_string(options.count) +
                                                   " components asked for, the mesh has " +
                                                   std::to_string(work.vertices()) + " vertices");
   }
   check_inside(options.inside, work.vertices());
   SurfaceDistances distances =
-      distances_along(work.rest(), work.triangles(), distance_options(options));
-  const bool reference = options.compatibility != Compatibility::none;
+      distances_along(work.rest(), work.triangles(), options.distances, context);
   const MovingParts moving =
-      noted_moving_parts(source.moving, work.rest(), work.triangles(), options.notes);
+      noted_moving_parts(source.moving, work.rest(), work.triangles(), context);
   const double size = moving.diameter;
   AnalysisOptions of_surface = options;
   if (!reference) {
@@ -291,36 +299,28 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
     of_surface.inside = on_surface(std::move(inside), distances, work.vertices());
   }
   check_inside(of_surface.inside, work.vertices());
+  DecompositionOptions decomposition = decomposition_options(options);
   decomposition.count = component_count(work, size, of_surface);
-  if (decomposition.count < options.decomposition.count) {
-    note(options.notes, "K = " + std::to_string(options.decomposition.count) + ": " +
-                            std::to_string(work.frames()) + " frames tell at most " +
-                            std::to_string(decomposition.count) +
-                            " components of this surface apart; so many are taken");
+  if (decomposition.count < options.count) {
+    context.note("K = " + std::to_string(options.count) + ": " + std::to_string(work.frames()) +
+                 " frames tell at most " + std::to_string(decomposition.count) +
+                 " components of this surface apart; so many are taken");
   }
-  note_parting(work, options);
+  note_parting(work, options, context.part(0, 0));
   const double unit = reference ? largest_frame_extent(*source.given) : size;
   const SupportRange range = support_range(options.d_min, options.d_max, unit);
   decomposition.d_min = range.d_min;
   decomposition.d_max = range.d_max;
-  if (reference) {
-    decomposition.iterations =
-        decomposition.iterations.value_or(DecompositionOptions::kReferenceIterations);
-    decomposition.tolerance = 0;
-    decomposition.sign_rule = SignRule::literal;
-    decomposition.scale = MotionScale::standard_deviation;
-    decomposition.returned = ReturnedIterate::last;
-  } else {
+  if (!reference) {
     decomposition.parts =
         part_weights(work.rest(), work.triangles(), of_surface.inside, options.distances.welding);
   }
   decomposition.distances = distances;
-  decomposition.threads = options.threads;
-  reserved_for_distances(decomposition, options.distances.method, work.vertices(), options.threads);
-  decomposition.progress = options.progress;
   Components components;
   try {
-    components = decomposed_inside(sequence, of_surface.inside, decomposition, options.ranks);
+    components = decomposed_inside(
+        sequence, of_surface.inside, decomposition,
+        beside_distances(options.distances.method, work.vertices(), decomposition.count, context));
   } catch (const MismatchError& error) {
     // All frames may move elsewhere.
     const std::string text = error.what();
@@ -351,19 +351,19 @@ void check_components(const GivenComponents& given, const FrameSource& sequence)
 }
 
 Analysis analysis_of(const GivenComponents& given, const FrameSource& sequence,
-                     const std::vector<VertexIndex>& moving, const AnalysisOptions& options) {
+                     const std::vector<VertexIndex>& moving, const AnalysisOptions& options,
+                     const Context& context) {
   check_components(given, sequence);
   const Components& components = given.components;
   SurfaceDistances distances =
-      distances_along(components.rest, components.triangles, distance_options(options));
+      distances_along(components.rest, components.triangles, options.distances, context);
   check_inside(options.inside, components.vertices());
-  return {
-      centered_inside(components, options.inside),
-      std::move(distances),
-      options.inside,
-      0,
-      options.distances.welding,
-      noted_moving_parts(moving, components.rest, components.triangles, options.notes).diameter};
+  return {centered_inside(components, options.inside),
+          std::move(distances),
+          options.inside,
+          0,
+          options.distances.welding,
+          noted_moving_parts(moving, components.rest, components.triangles, context).diameter};
 }
 
 }  // namespace mimetra

@@ -10,8 +10,6 @@
 
 namespace mimetra {
 
-class Ranks;
-
 /// Which vertices count as one for distances.
 enum class Welding {
   exact,  ///< those at one place (UV seams)
@@ -35,9 +33,6 @@ Weld weld_of(const Positions& positions, Welding welding);
 struct DistanceOptions {
   GeodesicMethod method = GeodesicMethod::heat;
   Welding welding = Welding::exact;
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  Notes notes = {};
 
   static constexpr Option kMethod{"method", &DistanceOptions::method};
   static constexpr Option kWelding{"welding", &DistanceOptions::welding};
@@ -48,7 +43,7 @@ struct DistanceOptions {
 /// rounding opened. Throws std::invalid_argument as SurfaceDistances does, and for options out of
 /// range.
 SurfaceDistances distances_along(const Positions& rest, const Triangles& triangles,
-                                 const DistanceOptions& options = {});
+                                 const DistanceOptions& options = {}, const Context& = {});
 
 /// Distances between which a support map rises, absolute.
 struct SupportRange {
@@ -100,6 +95,8 @@ constexpr std::string_view choice_name(Compatibility value) {
 }
 
 struct AnalysisOptions {
+  /// Number of components K.
+  int count = 30;
   /// A frame, the mean of all, or a given pose (N x 3); by default the source's.
   std::optional<std::variant<RestPose, Positions>> rest = {};
   /// Distance up to which sparsity costs nothing, and from which it costs all.
@@ -109,25 +106,40 @@ struct AnalysisOptions {
   /// Where components and regions may lie (N), empty for everywhere. What the other vertices do
   /// changes nothing: components are zero there, and no centre or region lies there.
   std::vector<bool> inside = {};
-  /// Its lengths, distances, part weights, threads and progress are those of the analysis, and its
-  /// sign rule, scale, tolerance and returned iterate those of the compatibility where there is
-  /// one.
-  DecompositionOptions decomposition = {.count = 30};
-  /// Its threads and notes are those of the analysis.
+  /// As in DecompositionOptions. A compatibility runs all iterations, and refuses a tolerance.
+  double sparsity = DecompositionOptions().sparsity;
+  double rho = DecompositionOptions().rho;
+  std::optional<int> iterations = {};
+  int admm_iterations = DecompositionOptions().admm_iterations;
+  double tolerance = DecompositionOptions::kUsualTolerance;
+  bool nonnegative = true;
+  double basis_tolerance = 0;
+  IterationPrecision precision = IterationPrecision::double_precision;
   DistanceOptions distances = {};
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  /// Processes that decompose together: all call analyse() with the same source and options, and
-  /// get the same.
-  const Ranks* ranks = nullptr;
-  Progress progress = {};
-  Notes notes = {};
 
+  static constexpr Option kCount{"count", &AnalysisOptions::count,
+                                 DecompositionOptions::kCount.range};
   static constexpr Option kRest{"rest", &AnalysisOptions::rest};
   static constexpr Option kMinimum{"d_min", &AnalysisOptions::d_min};
   static constexpr Option kMaximum{"d_max", &AnalysisOptions::d_max};
   static constexpr Option kCompatibility{"compatibility", &AnalysisOptions::compatibility};
-  static constexpr auto declared() { return std::tuple(kMinimum, kMaximum, kCompatibility); }
+  static constexpr Option kSparsity{"sparsity", &AnalysisOptions::sparsity,
+                                    DecompositionOptions::kSparsity.range};
+  static constexpr Option kRho{"rho", &AnalysisOptions::rho, DecompositionOptions::kRho.range};
+  static constexpr Option kIterations{"iterations", &AnalysisOptions::iterations,
+                                      DecompositionOptions::kIterations.range};
+  static constexpr Option kAdmmIterations{"admm_iterations", &AnalysisOptions::admm_iterations,
+                                          DecompositionOptions::kAdmmIterations.range};
+  static constexpr Option kTolerance{"tolerance", &AnalysisOptions::tolerance,
+                                     DecompositionOptions::kTolerance.range};
+  static constexpr Option kNonnegative{"nonnegative", &AnalysisOptions::nonnegative};
+  static constexpr Option kBasisTolerance{"basis_tolerance", &AnalysisOptions::basis_tolerance,
+                                          DecompositionOptions::kBasisTolerance.range};
+  static constexpr Option kPrecision{"precision", &AnalysisOptions::precision};
+  static constexpr auto declared() {
+    return std::tuple(kCount, kMinimum, kMaximum, kCompatibility, kSparsity, kRho, kIterations,
+                      kAdmmIterations, kTolerance, kNonnegative, kBasisTolerance, kPrecision);
+  }
 };
 
 /// Components of a sequence, the distances along their rest pose, where regions may lie (N, or
@@ -146,17 +158,19 @@ struct Analysis {
 std::shared_ptr<const FrameSource> work_of(const Source& source, const AnalysisOptions& options);
 
 /// Share of the motion energy, squared distances from the rest pose, on each vertex (N), of that on
-/// those `inside` (N, empty for all); 0 where nothing moves. The same bytes for any number of
-/// threads.
+/// those `inside` (N, empty for all); 0 where nothing moves.
 Eigen::VectorXd motion_on_vertices(const FrameSource& sequence,
                                    const std::vector<bool>& inside = {},
-                                   const BlockOptions& options = {});
+                                   const Context& context = {});
 
 /// Connected parts of a surface, each weighing its area as a share of the largest part's, of which
 /// only vertices `inside` (N, or empty) count: what moves a tooth counts as little as a tooth is of
 /// the skin, however dense its mesh. Empty where there is one part, or nothing has area.
 PartWeights part_weights(const Positions& rest, const Triangles& triangles,
                          const std::vector<bool>& inside = {}, Welding welding = Welding::exact);
+
+/// The decomposition of these options, but for lengths, distances and part weights.
+DecompositionOptions decomposition_options(const AnalysisOptions& options);
 
 /// How many of the components asked for are made. Within d_min of its centre a component may move
 /// everything, so that F frames tell F components apart there; of the surface there are so many
@@ -170,7 +184,8 @@ int component_count(const FrameSource& sequence, double size, const AnalysisOpti
 /// section of a part. Throws OptionError
 /// (Topic::component_count, Topic::support_range, Topic::no_vertex_inside) and what decompose()
 /// throws.
-Analysis analyse(const Source& source, const AnalysisOptions& options = {});
+Analysis analyse(const Source& source, const AnalysisOptions& options = {},
+                 const Context& context = {});
 
 /// Components of an earlier run.
 struct GivenComponents {
@@ -187,6 +202,7 @@ void check_components(const GivenComponents& given, const FrameSource& sequence)
 /// where regions may lie, which moves the centres outside to the strongest vertices inside.
 /// `moving` are the vertices that move in the sequence. Throws as check_components().
 Analysis analysis_of(const GivenComponents& given, const FrameSource& sequence,
-                     const std::vector<VertexIndex>& moving, const AnalysisOptions& options = {});
+                     const std::vector<VertexIndex>& moving, const AnalysisOptions& options = {},
+                     const Context& context = {});
 
 }  // namespace mimetra

@@ -1,17 +1,16 @@
 #pragma once
 
-#include "toolkit/splocs/decomposition_options.h"
+#include "toolkit/mesh/context.h"
+#include "toolkit/splocs/surface_distances.h"
 
 namespace mimetra {
 
-/// Bytes that exact distances from several sources take on `threads` threads (0 for all there are),
-/// each of which asks from one at a time.
-double exact_distance_bytes(Eigen::Index vertices, int threads, int sources);
+/// Bytes that distances from several sources take besides what planned_decomposition() counts, if
+/// each thread asks from one source at a time. Only exact distances take any.
+double distance_bytes(GeodesicMethod method, Eigen::Index vertices, int sources, const Context&);
 
-/// Bytes that distances by this method take besides what planned_decomposition() counts of them,
-/// taken out of the memory that the decomposition may take. Throws MismatchError where they leave
-/// none.
-double reserved_for_distances(DecompositionOptions& decomposition, GeodesicMethod method,
-                              Eigen::Index vertices, int threads);
+/// The context with the memory that these distances leave. Throws MismatchError if they take more
+/// than there is.
+Context beside_distances(GeodesicMethod method, Eigen::Index vertices, int sources, const Context&);
 
 }  // namespace mimetra

@@ -33,12 +33,11 @@ std::optional<double> percentage_error(double full, double k, double size) {
 }
 
 EvaluatedTransfer solved(const Source& source, const Target& target, const Selection& selection,
-                         const SolveOptions& options) {
-  const PlacedSource placed = placed_at(target, source, options);
-  EvaluatedTransfer result{{}, solve(placed.source, target, selection, options), {}};
-  SolveOptions of_error = options;
-  of_error.progress = {};
-  result.error = error_of(result.solution, placed.source, target, selection, of_error);
+                         const SolveOptions& options, const Context& context) {
+  const PlacedSource placed = placed_at(target, source, options.axes, context);
+  EvaluatedTransfer result{{}, solve(placed.source, target, selection, options, context), {}};
+  result.error =
+      error_of(result.solution, placed.source, target, selection, options, context.part(1, 1));
   result.row.de_all = result.error.de_all;
   result.row.de_region = result.error.de_region;
   result.row.transfer_seconds = result.solution.seconds;
@@ -65,8 +64,8 @@ std::optional<double> common_radius(const Regions& regions) {
 }  // namespace
 
 EvaluatedTransfer evaluate_full(const Source& source, const Target& target,
-                                const SolveOptions& options) {
-  EvaluatedTransfer result = solved(source, target, whole(target), options);
+                                const SolveOptions& options, const Context& context) {
+  EvaluatedTransfer result = solved(source, target, whole(target), options, context);
   result.row.vertices = source.sequence->vertices();
   result.row.triangles = static_cast<int>(source.sequence->triangles().rows());
   result.row.de_region = result.row.de_all;
@@ -75,9 +74,10 @@ EvaluatedTransfer evaluate_full(const Source& source, const Target& target,
 
 EvaluatedTransfer evaluate_by(const Regions& regions, const EvaluatedTransfer& full,
                               const Source& source, const Target& target,
-                              const SolveOptions& options) {
-  const Selection selection = bordered_selection(regions, target, options, source.moving);
-  EvaluatedTransfer result = solved(source, target, selection, options);
+                              const SolveOptions& options, const Context& context) {
+  const Selection selection =
+      bordered_selection(regions, target, options, source.moving, context.part(0, 0));
+  EvaluatedTransfer result = solved(source, target, selection, options, context);
   EvaluationRow& row = result.row;
   result.regions = with_border(regions, selection, target);
   row.vertices = result.regions.vertex_count();
@@ -101,45 +101,42 @@ constexpr std::array kCurveShares = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8};
 /// Makes the rows of one evaluation, one after the other.
 class Rows {
  public:
-  Rows(const FrameSource& sequence, const Target& given, const EvaluationOptions& options)
+  Rows(const FrameSource& sequence, const Target& given, const EvaluationOptions& options,
+       const Context& context)
       : options_(with_common(options)),
+        context_(context),
         steps_(1 + number_of_rows(options)),
-        matched_(sequence, given,
-                 {.source_rest = asked_rest(sequence, options.source),
-                  .threads = options.threads,
-                  .notes = options.notes}),
+        matched_(sequence, given, asked_rest(sequence, options.source), context.part(0, 0)),
         target_(*matched_) {
     if (options.curve || options.regions.select == Selector::transfer) {
       RegionChoiceOptions of_transfer = options.regions;
       of_transfer.select = Selector::transfer;
-      check_selection(target_, of_transfer, options.solving.space);
+      check_selection(target_, of_transfer, options.solve.space);
     }
-    check_rules(target_, options_.solving);
-    check_border(options.given ? &*options.given : nullptr, target_, options_.solving);
-    options_.source.joint = joint_search({target_}, options_.solving);
+    check_rules(target_, options_.solve);
+    check_border(options.given ? &*options.given : nullptr, target_, options_.solve);
     // Nothing that is returned keeps it.
     source_ = prepare_source(
         std::shared_ptr<const FrameSource>(std::shared_ptr<const FrameSource>(), &sequence),
-        options_.source);
-    options_.solving.progress = next_part(0, 1);
-    full_ = evaluate_full(source_, target_, options_.solving);
+        options_.source, joint_search({target_}, options_.solve), context.part(0, 0));
+    full_ = evaluate_full(source_, target_, options_.solve, next_part(0, 1));
   }
 
   /// A row of regions that are known already, completed for the target.
   void add_given(const GivenRegions& given) {
     check_regions(given, *source_.sequence);
-    options_.solving.progress = next_part(0, 1);
     RegionCompleter completion(source_, options_.regions, options_.analysis);
-    const Regions regions = completion(given.regions, target_, options_.solving);
-    add(evaluate_by(regions, full_, source_, target_, options_.solving));
+    const Regions regions = completion(given.regions, target_, options_.solve, next_part(0, 0));
+    add(evaluate_by(regions, full_, source_, target_, options_.solve, next_part(0, 1)));
   }
 
   /// A row of the strongest regions of k components.
   void add_energy(int k) {
     const Stopwatch stopwatch;
     const Analysis analysis = analysis_of(k);
-    const Regions regions =
-        completer(analysis)(choose_regions(analysis, options_.regions), target_, options_.solving);
+    const Context chosen = next_part(kAnalysisShare, kAnalysisShare);
+    const Regions regions = completer(analysis)(choose_regions(analysis, options_.regions, chosen),
+                                                target_, options_.solve, chosen);
     add(regions, analysis, analysis.components.count(), stopwatch.seconds());
   }
 
@@ -147,13 +144,14 @@ class Rows {
   void add_transfer(const SelectionBound& bound) {
     const Stopwatch stopwatch;
     if (!selector_) selector_.emplace(source_, options_.regions, options_.analysis);
-    const PlacedSource placed = placed_at(target_, source_, options_.solving);
-    options_.solving.progress = next_part(0, kAnalysisShare);
-    const Regions regions =
-        selector_->within({&bound, 1}, placed.source, target_, options_.solving).front();
+    const PlacedSource placed = placed_at(target_, source_, options_.solve.axes, context_);
+    const Regions regions = selector_
+                                ->within({&bound, 1}, placed.source, target_, options_.solve,
+                                         next_part(0, kAnalysisShare))
+                                .front();
     const double seconds = stopwatch.seconds();
-    options_.solving.progress = next_part(kAnalysisShare, 1);
-    EvaluatedTransfer result = evaluate_by(regions, full_, source_, target_, options_.solving);
+    EvaluatedTransfer result =
+        evaluate_by(regions, full_, source_, target_, options_.solve, next_part(kAnalysisShare, 1));
     result.row.k = static_cast<int>(regions.regions.size());
     result.row.by = Selector::transfer;
     result.row.decompose_seconds = seconds;
@@ -167,14 +165,14 @@ class Rows {
     const Analysis analysis = analysis_of(EvaluationOptions::kCurveComponents);
     const double seconds = stopwatch.seconds();
     RegionChoiceOptions of_share = options_.regions;
-    const Regions all = choose_regions(analysis, of_share);
-    of_share.notes = {};
+    const Context chosen = next_part(kAnalysisShare, kAnalysisShare);
+    const Regions all = choose_regions(analysis, of_share, chosen);
     for (const double share : kCurveShares) {
       if (regions_within(all, share, source_.sequence->triangles()) == 0) continue;
       of_share.triangles = share;
       RegionCompleter completion(analysis, of_share);
-      const Regions regions =
-          completion(choose_regions(analysis, of_share), target_, options_.solving);
+      const Regions regions = completion(choose_regions(analysis, of_share, chosen.quiet()),
+                                         target_, options_.solve, chosen.quiet());
       const auto triangles = static_cast<int>(regions.triangles.size());
       if (!rows_.empty() && rows_.back().triangles == triangles) continue;
       add(regions, analysis, static_cast<int>(regions.regions.size()), seconds);
@@ -189,8 +187,8 @@ class Rows {
   std::vector<EvaluationRow> with_full() && {
     judge(full_);
     if (!unusable_.empty()) {
-      note(options_.notes, target_.name + ": rows of which the result may not be usable: " +
-                               joined(unusable_, "; ", "; "));
+      context_.note(target_.name + ": rows of which the result may not be usable: " +
+                    joined(unusable_, "; ", "; "));
     }
     rows_.push_back(full_.row);
     return std::move(rows_);
@@ -198,12 +196,8 @@ class Rows {
 
  private:
   static EvaluationOptions with_common(EvaluationOptions options) {
-    options.source.notes = options.analysis.notes = options.regions.notes = options.solving.notes =
-        options.notes;
-    options.source.threads = options.analysis.threads = options.solving.threads = options.threads;
-    options.source.ranks = options.analysis.ranks = options.solving.ranks = options.ranks;
-    options.solving.edges = edge_sum(options.analysis.compatibility);
-    options.solving.distances = options.analysis.distances;
+    if (!options.solve.edges) options.solve.edges = edge_sum(options.analysis.compatibility);
+    if (!options.solve.distances) options.solve.distances = options.analysis.distances;
     return options;
   }
 
@@ -214,10 +208,10 @@ class Rows {
   }
 
   /// Of the row that is made.
-  Progress next_part(double from, double to) const {
+  Context next_part(double from, double to) const {
     const double done = full_.solution.sequence ? static_cast<double>(rows_.size()) + 1 : 0;
-    return part_of(options_.progress, std::min(1.0, (done + from) / steps_),
-                   std::min(1.0, (done + to) / steps_));
+    return context_.part(std::min(1.0, (done + from) / steps_),
+                         std::min(1.0, (done + to) / steps_));
   }
 
   /// Keeps what is wrong with a result that people would not use.
@@ -241,9 +235,8 @@ class Rows {
   }
 
   Analysis analysis_of(int k) {
-    options_.analysis.decomposition.count = k;
-    options_.analysis.progress = next_part(0, kAnalysisShare);
-    return analyse(source_, options_.analysis);
+    options_.analysis.count = k;
+    return analyse(source_, options_.analysis, next_part(0, kAnalysisShare));
   }
 
   RegionCompleter& completer(const Analysis& analysis) {
@@ -252,8 +245,8 @@ class Rows {
   }
 
   void add(const Regions& regions, const Analysis& analysis, int k, double seconds) {
-    options_.solving.progress = next_part(kAnalysisShare, 1);
-    EvaluatedTransfer result = evaluate_by(regions, full_, source_, target_, options_.solving);
+    EvaluatedTransfer result =
+        evaluate_by(regions, full_, source_, target_, options_.solve, next_part(kAnalysisShare, 1));
     result.row.k = k;
     result.row.by = Selector::energy;
     result.row.decompose_seconds = seconds;
@@ -262,6 +255,7 @@ class Rows {
   }
 
   EvaluationOptions options_;
+  const Context& context_;
   double steps_;
   MatchedTarget matched_;
   Target target_;
@@ -276,10 +270,15 @@ class Rows {
 }  // namespace
 
 std::vector<EvaluationRow> evaluate(const FrameSource& sequence, const Target& target,
-                                    const EvaluationOptions& options) {
+                                    const EvaluationOptions& options, const Context& context) {
   check_options(options);
+  check_options(options.analysis);
   check_options(options.regions);
-  Rows rows(sequence, target, options);
+  check_options(options.solve);
+  if (options.analysis.count != AnalysisOptions().count) {
+    throw std::invalid_argument("analysis.count: give the numbers of components as `counts`");
+  }
+  Rows rows(sequence, target, options, context);
   if (options.given) {
     rows.add_given(*options.given);
   } else if (options.curve) {

@@ -45,13 +45,13 @@ struct EvaluatedTransfer {
 
 /// The transfer by all triangles. \pre a MatchedTarget. Throws as solve().
 EvaluatedTransfer evaluate_full(const Source& source, const Target& target,
-                                const SolveOptions& options = {});
+                                const SolveOptions& options = {}, const Context& context = {});
 
 /// The transfer by regions, beside the one by all triangles. \pre a MatchedTarget. Throws what
 /// bordered_selection() and solve() throw.
 EvaluatedTransfer evaluate_by(const Regions& regions, const EvaluatedTransfer& full,
                               const Source& source, const Target& target,
-                              const SolveOptions& options = {});
+                              const SolveOptions& options = {}, const Context& context = {});
 
 struct EvaluationOptions {
   /// Numbers of components, each >= 1: one row each. With Selector::transfer the most discs; none
@@ -63,18 +63,11 @@ struct EvaluationOptions {
   bool curve = false;
   /// One row by these regions instead.
   std::optional<GivenRegions> given = {};
-  /// Of the parts; their threads, ranks, progress and notes are those of the evaluation, and the
-  /// number of components is each of `counts`.
+  /// The steps. `counts` gives the numbers of components, so analysis.count must be the default.
   SourceOptions source = {};
   AnalysisOptions analysis = {};
   RegionChoiceOptions regions = {};
-  SolveOptions solving = {};
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  /// Processes that work together: all make the same call, and get the same.
-  const Ranks* ranks = nullptr;
-  Progress progress = {};
-  Notes notes = {};
+  SolveOptions solve = {};
 
   /// So many discs of the usual radius hold most of a face.
   static constexpr int kCurveComponents = 80;
@@ -88,6 +81,7 @@ struct EvaluationOptions {
 /// which is the last. Throws what prepare_source(), MatchedTarget(), analyse(), choose_regions(),
 /// check_regions(), check_border(), RegionSelector, bordered_selection() and solve() throw.
 std::vector<EvaluationRow> evaluate(const FrameSource& source, const Target& target,
-                                    const EvaluationOptions& options = {});
+                                    const EvaluationOptions& options = {},
+                                    const Context& context = {});
 
 }  // namespace mimetra

@@ -23,7 +23,7 @@ std::string described_shift(int shift) {
 
 void check_given_markers(const std::vector<Marker>& markers, const std::vector<std::string>& places,
                          const TriMesh& source, const TriMesh& target, const std::string& name,
-                         const Notes& notes) {
+                         const Context& context) {
   const int shift = better_shift(markers, source, target);
   try {
     check_markers(markers, source.positions, target.positions);
@@ -39,7 +39,7 @@ void check_given_markers(const std::vector<Marker>& markers, const std::vector<s
   }
   const auto doubtful = doubtful_markers(markers, source.positions, target.positions);
   for (const std::string& text : described(doubtful, markers, places)) {
-    note(notes, name + ": " + text, Topic::poor_match);
+    context.note(name + ": " + text, Topic::poor_match);
   }
 }
 

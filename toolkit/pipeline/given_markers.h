@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "toolkit/correspondence/markers.h"
-#include "toolkit/pipeline/note.h"
+#include "toolkit/mesh/context.h"
 
 namespace mimetra {
 
@@ -15,6 +15,6 @@ namespace mimetra {
 /// name, for what check_markers() refuses.
 void check_given_markers(const std::vector<Marker>& markers, const std::vector<std::string>& places,
                          const TriMesh& source, const TriMesh& target, const std::string& name,
-                         const Notes& notes);
+                         const Context& context);
 
 }  // namespace mimetra

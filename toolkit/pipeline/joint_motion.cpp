@@ -105,7 +105,8 @@ MeshSequence on_target(const MeshSequence& sequence, const BlendshapeModel& targ
 
 /// Both errors as a share of the diameter; none where there is no patch to hold out.
 std::optional<HeldOutErrors> held_out_errors(const std::shared_ptr<const FrameSource>& placed,
-                                             const Target& matched, const SolveOptions& options) {
+                                             const Target& matched, EdgeSum edges,
+                                             const Context& context) {
   const BlendshapeModel& target = matched.model;
   const Pairing* pairing = matched.pairing.get();
   const MeshSequence judged = judged_frames(placed);
@@ -123,13 +124,13 @@ std::optional<HeldOutErrors> held_out_errors(const std::shared_ptr<const FrameSo
         with_partners(triangles_outside(target.triangles(), patch, p), pairing);
     if (held.empty() || triangles.empty()) continue;
     const std::vector<RigidTransform> stable =
-        rigid_motion(part_of_vertices(sequence, others), {.threads = options.threads});
-    JointFitOptions joint{.edges = options.edges, .threads = options.threads};
+        rigid_motion(part_of_vertices(sequence, others), {}, context);
+    const JointFitOptions joint{.edges = edges};
     JointFitOptions fixed = joint;
     fixed.iterations = 0;
     const auto error = [&](const JointFitOptions& how) {
-      const JointFit fit(sequence.rest(), target, triangles, how);
-      return squared_error(sequence, target, fit(sequence, stable), held);
+      const JointFit fit(sequence.rest(), target, triangles, how, context);
+      return squared_error(sequence, target, fit(sequence, stable, context), held);
     };
     sums.stable += error(fixed);
     sums.joint += error(joint);
@@ -145,15 +146,16 @@ Similarity inverse(const Similarity& similarity) {
   return {1 / similarity.scale, similarity.rotation.transpose(), similarity.to, similarity.from};
 }
 
-JointMotion joint_motion(const Source& source, const Target& target, const SolveOptions& options) {
-  const PlacedSource placed = placed_at(target, source, options);
+JointMotion joint_motion(const Source& source, const Target& target, const SolveOptions& options,
+                         const Context& context) {
+  const PlacedSource placed = placed_at(target, source, options.axes, context);
   const FrameSource& sequence = *placed.source.sequence;
   const BlendshapeModel& model = target.model;
-  const JointFit fit(
-      sequence.rest(), model, all_triangles(model.triangles()),
-      {.edges = options.edges, .pairing = target.pairing, .threads = options.threads});
-  JointMotion joint{fit(sequence, placed.source.motion).motion,
-                    held_out_errors(placed.source.sequence, target, options)};
+  const EdgeSum edges = options.edges.value_or(EdgeSum::all);
+  const JointFit fit(sequence.rest(), model, all_triangles(model.triangles()),
+                     {.edges = edges, .pairing = target.pairing}, context);
+  JointMotion joint{fit(sequence, placed.source.motion, context).motion,
+                    held_out_errors(placed.source.sequence, target, edges, context)};
   const Similarity back = inverse(placed.similarity);
   for (RigidTransform& motion : joint.motion) motion = back.carry(motion);
   return joint;
@@ -166,10 +168,8 @@ JointSearch joint_search(const std::vector<Target>& targets, const SolveOptions&
     return solves_for_vertices(target.model, options.space);
   });
   if (found == targets.end()) return {};
-  SolveOptions silent = options;
-  silent.notes = {};
-  return [target = *found, silent](const Source& source) {
-    return joint_motion(source, target, silent);
+  return [target = *found, options](const Source& source, const Context& context) {
+    return joint_motion(source, target, options, context.quiet().without_ranks());
   };
 }
 

@@ -6,7 +6,7 @@
 
 namespace mimetra {
 
-/// For SourceOptions: finds the head's motion together with the expressions of the first of the
+/// For prepare_source(): finds the head's motion together with the expressions of the first of the
 /// targets that is solved for weights, and compares it with the stable one on vertices that were
 /// held out; empty where no target is. It refers to the target.
 ///

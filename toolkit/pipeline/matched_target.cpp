@@ -46,21 +46,19 @@ std::string described_faces(const Connectivity& source, const BlendshapeModel& m
 /// Finds what markers tell. Errors are the target's.
 FoundCorrespondence found_by(const std::vector<Marker>& markers, const TriMesh& source,
                              const TriMesh& target, const std::string& name,
-                             const MatchOptions& options) {
+                             const Context& context) {
   try {
-    FoundCorrespondence found = find_correspondence(
-        source, target, markers, {.threads = options.threads, .progress = options.progress});
+    FoundCorrespondence found = find_correspondence(source, target, markers, {}, context);
     if (found.inside_out) {
-      note(options.notes,
-           name +
-               ": its faces lead the other way round than the source's (one of them "
-               "is inside out); they are paired as if turned; if one was mirrored, left and "
-               "right are exchanged");
+      context.note(name +
+                   ": its faces lead the other way round than the source's (one of them "
+                   "is inside out); they are paired as if turned; if one was mirrored, left and "
+                   "right are exchanged");
     }
     if (found.fit.target_box.is_section) {
-      note(options.notes, name +
-                              ": the markers span less than a third of the part they are on; "
-                              "lengths are measured by the markers' extent");
+      context.note(name +
+                   ": the markers span less than a third of the part they are on; "
+                   "lengths are measured by the markers' extent");
     }
     return found;
   } catch (const MismatchError& error) {
@@ -82,15 +80,15 @@ double paired_size(const Correspondence& pairs, const TriMesh& target) {
 
 /// Says that it was needed, and what makes the markers doubtful.
 AutomaticMarkers found_between(const MarkersBetween& search, const TriMesh& source,
-                               const Target& target, const MatchOptions& options) {
+                               const Target& target, const Context& context) {
   const std::string differs =
       target.name + ": " + described_faces(source.connectivity, target.model.get());
   try {
-    AutomaticMarkers found = search(source);
-    note(options.notes,
-         differs + "; " + std::to_string(found.markers.size()) + " markers were found on both");
+    AutomaticMarkers found = search(source, context.part(0, 0));
+    context.note(differs + "; " + std::to_string(found.markers.size()) +
+                 " markers were found on both");
     for (const std::string& warning : found.warnings()) {
-      note(options.notes, target.name + ": " + warning, Topic::poor_match);
+      context.note(target.name + ": " + warning, Topic::poor_match);
     }
     return found;
   } catch (const MismatchError& error) {
@@ -100,24 +98,23 @@ AutomaticMarkers found_between(const MarkersBetween& search, const TriMesh& sour
 
 /// Says where a face is open at rest as the other one is not, or has no opening at all.
 void note_openings(const TriMesh& source, const TriMesh& target, const AutomaticMarkers& markers,
-                   const std::string& name, const Notes& notes) {
+                   const std::string& name, const Context& context) {
   for (const OpeningAtRest& opening : openings_at_rest(source, target, markers)) {
     if (!opening.differs()) continue;
     const bool is_sources = opening.source > opening.target;
-    note(notes,
-         name + ": at rest the " + std::string(opening.name) + " is open by " +
-             percent(opening.target) + " of its width, on the source by " +
-             percent(opening.source) + ": " + (is_sources ? "the source's" : "its") +
-             " rest pose is likely not neutral",
-         is_sources ? Topic::unneutral_rest : Topic::other);
+    context.note(name + ": at rest the " + std::string(opening.name) + " is open by " +
+                     percent(opening.target) + " of its width, on the source by " +
+                     percent(opening.source) + ": " + (is_sources ? "the source's" : "its") +
+                     " rest pose is likely not neutral",
+                 is_sources ? Topic::unneutral_rest : Topic::other);
   }
   for (const LoneOpening& opening : lone_openings(source, target, markers)) {
-    note(notes,
-         name + ": the " + std::string(opening.name) + "'s edges were found on the " +
-             (opening.is_sources ? "source" : "target") +
-             " only; the other's markers there may lie beside them, and what opens and closes it "
-             "may be lost: look at them, and give markers of both edges",
-         Topic::poor_match);
+    context.note(
+        name + ": the " + std::string(opening.name) + "'s edges were found on the " +
+            (opening.is_sources ? "source" : "target") +
+            " only; the other's markers there may lie beside them, and what opens and closes it "
+            "may be lost: look at them, and give markers of both edges",
+        Topic::poor_match);
   }
 }
 
@@ -146,7 +143,8 @@ bool is_to_be_paired(const FrameSource& source, const Target& target) {
          !has_faces_of(rest_mesh(source), target.model);
 }
 
-MatchedTarget::MatchedTarget(const FrameSource& source, Target target, const MatchOptions& options)
+MatchedTarget::MatchedTarget(const FrameSource& source, Target target,
+                             const std::optional<Positions>& source_rest, const Context& context)
     : target_(std::move(target)) {
   const BlendshapeModel& model = target_.model;
   const bool is_given = !std::holds_alternative<std::monostate>(target_.match) &&
@@ -154,7 +152,7 @@ MatchedTarget::MatchedTarget(const FrameSource& source, Target target, const Mat
   const bool differs = !has_faces_of(rest_mesh(source), model);
   if (differs && !is_given) check_numbering(source, target_);
   if (is_to_be_paired(source, target_)) {
-    pair({options.source_rest.value_or(source.rest()), source.connectivity()}, options);
+    pair({source_rest.value_or(source.rest()), source.connectivity()}, context);
     return;
   }
   if (differs) {
@@ -165,9 +163,9 @@ MatchedTarget::MatchedTarget(const FrameSource& source, Target target, const Mat
   }
   target_.match = {};
   if (!same_faces(source.connectivity(), model.connectivity())) {
-    note(options.notes, target_.name +
-                            ": has the source's faces in another order, wound the other way, or "
-                            "cut otherwise; they are taken for the same");
+    context.note(target_.name +
+                 ": has the source's faces in another order, wound the other way, or "
+                 "cut otherwise; they are taken for the same");
   }
   if (model.triangles() == source.triangles()) return;
   auto connectivity = std::make_shared<Connectivity>(model.connectivity());
@@ -178,26 +176,24 @@ MatchedTarget::MatchedTarget(const FrameSource& source, Target target, const Mat
     connectivity->triangles = source.triangles();
     connectivity->polygon_of_triangle = source.connectivity().polygon_of_triangle;
   }
-  own_ = std::make_unique<BlendshapeModel>(std::move(connectivity), model.neutral(),
-                                           model.expressions());
-  target_.model = *own_;
+  target_.model = BlendshapeModel(std::move(connectivity), model.neutral(), model.expressions());
 }
 
-void MatchedTarget::pair(const TriMesh& source, const MatchOptions& options) {
+void MatchedTarget::pair(const TriMesh& source, const Context& context) {
   const Stopwatch stopwatch;
   const BlendshapeModel& model = target_.model;
   const TriMesh target{model.neutral(), model.connectivity()};
   MatchReport report;
   Correspondence pairs;
   if (const auto* search = std::get_if<MarkersBetween>(&target_.match)) {
-    report.found = found_between(*search, source, target_, options);
-    note_openings(source, target, *report.found, target_.name, options.notes);
+    report.found = found_between(*search, source, target_, context);
+    note_openings(source, target, *report.found, target_.name, context);
     target_.match = report.found->markers;
   } else if (const auto* given = std::get_if<std::vector<Marker>>(&target_.match)) {
-    check_given_markers(*given, target_.marker_places, source, target, target_.name, options.notes);
+    check_given_markers(*given, target_.marker_places, source, target, target_.name, context);
   }
   if (const auto* markers = std::get_if<std::vector<Marker>>(&target_.match)) {
-    FoundCorrespondence found = found_by(*markers, source, target, target_.name, options);
+    FoundCorrespondence found = found_by(*markers, source, target, target_.name, context);
     report.quality = found.quality;
     report.markers = static_cast<int>(markers->size());
     pairs = std::move(found.correspondence);
@@ -212,8 +208,8 @@ void MatchedTarget::pair(const TriMesh& source, const MatchOptions& options) {
   target_.match = {};
   const std::string verdict = report.quality.verdict();
   if (verdict.starts_with("poor")) {
-    note(options.notes, target_.name + ": its correspondence with the source is " + verdict,
-         Topic::poor_match);
+    context.note(target_.name + ": its correspondence with the source is " + verdict,
+                 Topic::poor_match);
   }
   report.seconds = stopwatch.seconds();
   report_ = std::move(report);

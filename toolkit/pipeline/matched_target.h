@@ -4,34 +4,49 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "toolkit/correspondence/automatic_markers.h"
 #include "toolkit/correspondence/pairing.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/frame_source.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/model/blendshape_model.h"
 #include "toolkit/model/weight_rules.h"
-#include "toolkit/pipeline/note.h"
 
 namespace mimetra {
 
 /// Looks for markers from the source's undeformed shape to a target. Throws MismatchError that
 /// names the mesh on which nothing is found.
-using MarkersBetween = std::function<AutomaticMarkers(const TriMesh& source)>;
+using MarkersBetween = std::function<AutomaticMarkers(const TriMesh& source, const Context&)>;
 
 /// How a target of other faces than the source's is paired with it: not at all, by markers that are
 /// looked for if it has other faces, by markers, or as is known already.
 using GivenMatch =
     std::variant<std::monostate, MarkersBetween, std::vector<Marker>, Correspondence>;
 
-/// Who receives the deformation: a model, or a mesh, which is a model without expressions. It
-/// refers to the model.
+/// The shape of a target. It refers to a model, which outlives it, and keeps a temporary one.
+class TargetModel {
+ public:
+  TargetModel(const BlendshapeModel& model) : model_(std::shared_ptr<const void>(), &model) {}
+  TargetModel(BlendshapeModel&& model)
+      : model_(std::make_shared<const BlendshapeModel>(std::move(model))) {}
+  /// A mesh is a model without expressions.
+  TargetModel(const TriMesh& mesh) : TargetModel(BlendshapeModel(mesh, {})) {}
+
+  const BlendshapeModel& get() const { return *model_; }
+  operator const BlendshapeModel&() const { return *model_; }
+
+ private:
+  std::shared_ptr<const BlendshapeModel> model_;
+};
+
+/// Receives the deformation: a model or a mesh.
 struct Target {
   /// In notes and errors.
   std::string name;
-  std::reference_wrapper<const BlendshapeModel> model;
+  TargetModel model;
   GivenMatch match = {};
   /// Of the model's expressions, where they are solved for.
   WeightRules rules = {};
@@ -51,15 +66,6 @@ bool has_faces_of(const TriMesh& source, const BlendshapeModel& target);
 /// faces differ.
 bool is_to_be_paired(const FrameSource& source, const Target& target);
 
-struct MatchOptions {
-  /// The source's undeformed shape (N x 3); by default its rest pose.
-  std::optional<Positions> source_rest = {};
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  Progress progress = {};
-  Notes notes = {};
-};
-
 /// How well a target is paired, and what that took.
 struct MatchReport {
   CorrespondenceQuality quality;
@@ -74,6 +80,8 @@ struct MatchReport {
 /// another corner are cut along the source's diagonals, or paired.
 class MatchedTarget {
  public:
+  /// `source_rest` is the source's undeformed shape (N x 3), by default its rest pose.
+  ///
   /// Notes, under the target's name, markers that are doubtful and a match whose verdict is
   /// poor (Topic::poor_match), and a target that is inside out. Throws OptionError
   /// (Topic::other_faces) unless the target has the source's vertices and faces or a match is
@@ -81,16 +89,16 @@ class MatchedTarget {
   /// MismatchError for other wrong markers and those that fit a mirror image, a correspondence of
   /// other numbers of triangles, and one without any pair; Cancelled; what the search for markers
   /// throws.
-  MatchedTarget(const FrameSource& source, Target target, const MatchOptions& options = {});
+  MatchedTarget(const FrameSource& source, Target target,
+                const std::optional<Positions>& source_rest = {}, const Context& context = {});
 
   const Target& operator*() const { return target_; }
   /// None where the faces are the same.
   const std::optional<MatchReport>& report() const { return report_; }
 
  private:
-  void pair(const TriMesh& source, const MatchOptions& options);
+  void pair(const TriMesh& source, const Context& context);
 
-  std::unique_ptr<const BlendshapeModel> own_;  // null where the triangles are the same
   Target target_;
   std::optional<MatchReport> report_;
 };

@@ -23,6 +23,10 @@ constexpr double kFactorsPerVertex = 2000;
 constexpr double kPullPerTriangle = 72;
 constexpr double kLanesPerVertex = 5 * 3 * 16 * kNumber;
 
+double threads_of(const Context& context) {
+  return context.threads() > 0 ? context.threads() : std::thread::hardware_concurrency();
+}
+
 /// What a FrameStore has in memory: more frames are in its file.
 double kept_bytes(double all) {
   return all > static_cast<double>(FrameStore::kMemoryBytes) ? 0 : all;
@@ -44,15 +48,16 @@ double stored_bytes(const FrameSource& sequence) {
   return sequence.is_quick() ? 0 : kept_bytes(frame_bytes(sequence));
 }
 
-DecompositionPlan analysis_plan(const FrameSource& sequence, const AnalysisOptions& options) {
-  DecompositionOptions decomposition = options.decomposition;
+DecompositionPlan analysis_plan(const FrameSource& sequence, const AnalysisOptions& options,
+                                const Context& context) {
+  DecompositionOptions decomposition = decomposition_options(options);
   decomposition.count = component_count(sequence, sequence.diameter(), options);
-  decomposition.threads = options.threads;
-  const Reduction reduction(sequence.vertices(), options.threads, options.ranks);
-  const double distances = reserved_for_distances(decomposition, options.distances.method,
-                                                  sequence.vertices(), options.threads);
-  DecompositionPlan plan = planned_decomposition(sequence, reduction.part(), decomposition);
-  plan.bytes += distances;
+  const GeodesicMethod method = options.distances.method;
+  const int vertices = sequence.vertices(), sources = decomposition.count;
+  DecompositionPlan plan =
+      planned_decomposition(sequence, Reduction(vertices, context).part(), decomposition,
+                            beside_distances(method, vertices, sources, context));
+  plan.bytes += distance_bytes(method, vertices, sources, context);
   return plan;
 }
 
@@ -67,7 +72,7 @@ double selection_bytes(const FrameSource& sequence, const BlendshapeModel& targe
 }
 
 double solution_bytes(const FrameSource& sequence, const BlendshapeModel& target,
-                      const SolveOptions& options) {
+                      const SolveOptions& options, const Context& context) {
   const auto expressions = static_cast<double>(target.expressions().size());
   const double vertices = target.vertices(),
                triangles = static_cast<double>(target.triangles().rows());
@@ -81,17 +86,15 @@ double solution_bytes(const FrameSource& sequence, const BlendshapeModel& target
   if (options.smoothness > 0) {
     space += has_vertices ? poses : kNumber * 4 * sequence.frames() * expressions * expressions;
   }
-  const double threads =
-      options.threads > 0 ? options.threads : std::thread::hardware_concurrency();
+  const double threads = threads_of(context);
   return space + kPullPerTriangle * triangles + threads * kLanesPerVertex * vertices;
 }
 
 double regional_bytes(const FrameSource& sequence, const BlendshapeModel& target, int regions,
-                      const SolveOptions& options) {
+                      const Context& context) {
   const auto expressions = static_cast<double>(target.expressions().size());
   const double unknowns = (regions + 1) * expressions;
-  const double threads =
-      options.threads > 0 ? options.threads : std::thread::hardware_concurrency();
+  const double threads = threads_of(context);
   // The Gram matrix, the system and for each thread its factor; each thread's fields of a region,
   // gathered and shared out; the shares, twice, and the weights.
   return kNumber *

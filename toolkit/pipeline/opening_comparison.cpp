@@ -75,15 +75,15 @@ bool ComparedOpening::stays_open() const {
 
 std::vector<ComparedOpening> compared_openings(const FrameSource& source, const FrameSource& result,
                                                const AutomaticMarkers& markers,
-                                               const BlockOptions& options) {
+                                               const Context& context) {
   if (source.frames() != result.frames()) {
     throw MismatchError("the source has " + std::to_string(source.frames()) +
                         " frames, the result " + std::to_string(result.frames()));
   }
   const std::vector<FaceOpening> of_source = openings_of(source, markers.source),
                                  of_target = openings_of(result, markers.target);
-  const Eigen::MatrixXd source_is = openness(source, of_source, options),
-                        target_is = openness(result, of_target, options);
+  const Eigen::MatrixXd source_is = openness(source, of_source, context.part(0, 0.5)),
+                        target_is = openness(result, of_target, context.part(0.5, 1));
   std::vector<ComparedOpening> compared;
   for (std::size_t s = 0; s < of_source.size(); ++s) {
     const auto same = std::ranges::find(of_target, of_source[s].name, &FaceOpening::name);

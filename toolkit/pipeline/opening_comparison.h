@@ -51,6 +51,6 @@ std::vector<LoneOpening> lone_openings(const TriMesh& source, const TriMesh& tar
 /// what reading throws, Cancelled.
 std::vector<ComparedOpening> compared_openings(const FrameSource& source, const FrameSource& result,
                                                const AutomaticMarkers& markers,
-                                               const BlockOptions& = {});
+                                               const Context& context = {});
 
 }  // namespace mimetra

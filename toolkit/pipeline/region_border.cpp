@@ -159,12 +159,14 @@ Eigen::VectorXd carried_weights(const Eigen::VectorXd& weights, const Pairing& p
 }
 
 Selection bordered_selection(const Regions& regions, const Target& target,
-                             const SolveOptions& options, const std::vector<VertexIndex>& moving) {
+                             const SolveOptions& options, const std::vector<VertexIndex>& moving,
+                             const Context& context) {
   Selection selection = selection_of(regions, target);
   const bool fades = options.falloff && !options.per_region;
   if (regions.weights.size() == 0 && !fades) return selection;
   const BlendshapeModel& model = target.model;
-  const Weld weld = weld_of(model.neutral(), options.distances.welding);
+  const DistanceOptions of_distances = options.distances.value_or(DistanceOptions());
+  const Weld weld = weld_of(model.neutral(), of_distances.welding);
   Eigen::VectorXd weights = regions.weights;
   if (weights.size() == 0) {
     weights = Eigen::VectorXd::Zero(model.vertices());
@@ -180,10 +182,8 @@ Selection bordered_selection(const Regions& regions, const Target& target,
   if (fades) {
     check_option(options, SolveOptions::kFalloff);
     check_full_weight(target.name, weights);
-    DistanceOptions of_distances = options.distances;
-    of_distances.threads = options.threads;
     const SurfaceDistances distances =
-        distances_along(model.neutral(), model.triangles(), of_distances);
+        distances_along(model.neutral(), model.triangles(), of_distances, context);
     weights = fading_out(weights, model.triangles(), weld,
                          options.falloff->in(size_of_border(target, weights, moving)),
                          [&distances](std::span<const VertexIndex> sources) {

@@ -34,7 +34,8 @@ Eigen::VectorXd carried_weights(const Eigen::VectorXd& weights, const Pairing& p
 /// out of range, and what distances_along() throws. \pre a MatchedTarget
 Selection bordered_selection(const Regions& regions, const Target& target,
                              const SolveOptions& options,
-                             const std::vector<VertexIndex>& moving = {});
+                             const std::vector<VertexIndex>& moving = {},
+                             const Context& context = {});
 
 /// Regions of the source with the border that they have on a target of the same faces; for a paired
 /// one they are what they were.

@@ -11,7 +11,8 @@ namespace {
 
 /// Vertices where no region is made: those near rims, unless no component moves another vertex
 /// most.
-std::vector<bool> rims_to_avoid(const Analysis& analysis, const RegionChoiceOptions& options) {
+std::vector<bool> rims_to_avoid(const Analysis& analysis, const RegionChoiceOptions& options,
+                                const Context& context) {
   if (!options.drop_rims) return {};
   const Components& components = analysis.components;
   std::vector<bool> near =
@@ -22,17 +23,17 @@ std::vector<bool> rims_to_avoid(const Analysis& analysis, const RegionChoiceOpti
   }
   if (there == 0) return {};
   if (elsewhere == 0) {
-    note(options.notes, "every component moves the rim of the surface most: its regions are kept");
+    context.note("every component moves the rim of the surface most: its regions are kept");
     return {};
   }
-  note(options.notes,
-       std::to_string(there) + (there == 1 ? " component moves" : " components move") +
-           " the rim of the surface most and " + (there == 1 ? "gives" : "give") + " no region");
+  context.note(std::to_string(there) + (there == 1 ? " component moves" : " components move") +
+               " the rim of the surface most and " + (there == 1 ? "gives" : "give") +
+               " no region");
   return near;
 }
 
 /// Notes regions on parts of less than kSmallPart of the surface, also in the regions' own notes.
-void note_small_parts(Regions& regions, const Notes& notes) {
+void note_small_parts(Regions& regions, const Context& context) {
   int count = 0;
   std::set<int> parts;
   for (const Region& region : regions.regions) {
@@ -47,31 +48,29 @@ void note_small_parts(Regions& regions, const Notes& notes) {
                           " on connected parts of less than " + readable(100 * kSmallPart) +
                           " % of the surface: component " +
                           joined(words_of({parts.begin(), parts.end()}), ", ", " and "));
-  note(notes, regions.notes.back(), Topic::small_parts);
+  context.note(regions.notes.back(), Topic::small_parts);
 }
 
 }  // namespace
 
 void note_large_regions(const Regions& regions, const RegionChoiceOptions& options, double size,
-                        const Triangles& triangles) {
+                        const Triangles& triangles, const Context& context) {
   constexpr double kMost = 0.5;
-  if (options.radius.absolute || options.regions.shape != RegionShape::disc) return;
+  if (options.radius.absolute || options.shape != RegionShape::disc) return;
   const auto most = static_cast<std::size_t>(
       kMost * static_cast<double>(used_vertices(triangles, regions.vertices).size()));
   const auto is_large = [most](const Region& region) { return region.vertices.size() > most; };
   const auto count = std::ranges::count_if(regions.regions, is_large);
   if (count == 0) return;
-  note(options.notes,
-       std::to_string(count) + " of " + std::to_string(regions.regions.size()) +
-           " regions hold more than half of the mesh each: their radius is " +
-           readable(options.radius.in(size)) + ", " + percent(options.radius.value) +
-           " of the diameter of what moves, " + readable(size),
-       Topic::large_regions);
+  context.note(std::to_string(count) + " of " + std::to_string(regions.regions.size()) +
+                   " regions hold more than half of the mesh each: their radius is " +
+                   readable(options.radius.in(size)) + ", " + percent(options.radius.value) +
+                   " of the diameter of what moves, " + readable(size),
+               Topic::large_regions);
 }
 
 bool has_own_regions(const RegionChoiceOptions& options) {
-  return options.select == Selector::transfer ||
-         (options.triangles && options.completion.share > 0);
+  return options.select == Selector::transfer || (options.triangles && options.complete > 0);
 }
 
 void refuse_bound(double share, const std::string& reason) {
@@ -80,14 +79,17 @@ void refuse_bound(double share, const std::string& reason) {
                                                "smaller regions");
 }
 
-Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& options) {
+Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& options,
+                       const Context& context) {
   check_options(options);
-  RegionOptions of_search = options.regions;
-  of_search.radius = options.radius.in(analysis.size);
-  of_search.distances = analysis.distances;
-  of_search.inside = analysis.inside;
-  of_search.no_centers = rims_to_avoid(analysis, options);
-  Regions regions = find_regions(analysis.components, of_search);
+  Regions regions = find_regions(analysis.components,
+                                 {.shape = options.shape,
+                                  .radius = options.radius.in(analysis.size),
+                                  .coverage = options.coverage,
+                                  .inside = analysis.inside,
+                                  .no_centers = rims_to_avoid(analysis, options, context),
+                                  .distances = analysis.distances},
+                                 context);
   if (regions.triangles.empty()) {
     throw MismatchError("no region is left: no component moves anything where regions may lie" +
                         std::string(analysis.inside.empty()
@@ -101,9 +103,9 @@ Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& opti
     if (count == 0) refuse_bound(*options.triangles, "the strongest region holds more");
     regions = strongest(regions, count, triangles);
   }
-  for (const std::string& text : regions.notes) note(options.notes, text);
-  note_small_parts(regions, options.notes);
-  note_large_regions(regions, options, analysis.size, analysis.components.triangles);
+  for (const std::string& text : regions.notes) context.note(text);
+  note_small_parts(regions, context);
+  note_large_regions(regions, options, analysis.size, analysis.components.triangles, context);
   return regions;
 }
 

@@ -42,11 +42,12 @@ struct RegionChoiceOptions {
   /// Geodesic radius of a region. One of no size would hold nothing but its centre, and no triangle
   /// would be sure to be in it.
   Length radius = Length::share(RegionOptions::kRadiusShare);
-  /// Its radius and distances are those of the choice.
-  RegionOptions regions = {};
-  /// Of the regions for a target with expressions; its edges are those of the solve.
-  CompletionOptions completion = {};
-  Notes notes = {};
+  /// As in RegionOptions.
+  RegionShape shape = RegionShape::disc;
+  std::optional<double> coverage = {};
+  /// Completes the regions for a target with expressions: CompletionOptions::share and limit.
+  double complete = CompletionOptions().share;
+  double complete_limit = CompletionOptions().limit;
 
   /// Above it regions by the transfer cost hardly anything.
   static constexpr double kUsualShare = 0.3;
@@ -57,8 +58,16 @@ struct RegionChoiceOptions {
   static constexpr Option kDiscs{"discs", &RegionChoiceOptions::discs, {.minimum = 1}};
   static constexpr Option kDropRims{"drop_rims", &RegionChoiceOptions::drop_rims};
   static constexpr Option kRadius{"radius", &RegionChoiceOptions::radius, {.minimum = 1e-9}};
+  static constexpr Option kShape{"shape", &RegionChoiceOptions::shape};
+  static constexpr Option kCoverage{"coverage", &RegionChoiceOptions::coverage,
+                                    RegionOptions::kCoverage.range};
+  static constexpr Option kComplete{"complete", &RegionChoiceOptions::complete,
+                                    CompletionOptions::kShare.range};
+  static constexpr Option kCompleteLimit{"complete_limit", &RegionChoiceOptions::complete_limit,
+                                         CompletionOptions::kLimit.range};
   static constexpr auto declared() {
-    return std::tuple(kSelect, kTriangles, kDiscs, kDropRims, kRadius);
+    return std::tuple(kSelect, kTriangles, kDiscs, kDropRims, kRadius, kShape, kCoverage, kComplete,
+                      kCompleteLimit);
   }
 };
 
@@ -71,12 +80,13 @@ constexpr double kSmallPart = 0.02;
 /// the surface (Topic::small_parts), those that note_large_regions() finds, and components that
 /// give no region because they move a rim most. Throws std::invalid_argument for options out of
 /// range, OptionError (Topic::triangle_bound) where the strongest region alone holds more.
-Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& options = {});
+Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& options = {},
+                       const Context& context = {});
 
 /// Says which discs of a radius that was not given as a length hold more than half of a mesh of
 /// this size (Topic::large_regions): they tell nothing apart.
 void note_large_regions(const Regions& regions, const RegionChoiceOptions& options, double size,
-                        const Triangles& triangles);
+                        const Triangles& triangles, const Context& context);
 
 /// Whether each of several targets has regions that may hold what another's do not: those that are
 /// chosen for it, and those that make room for its own discs.

@@ -14,16 +14,6 @@ namespace {
 /// Radius of added discs, as a share of that of the regions.
 constexpr double kAddedRadius = 0.5;
 
-/// Makes the distances when they are asked for.
-DistanceFunction distances_when_needed(const Positions& rest, const Triangles& triangles,
-                                       const DistanceOptions& options) {
-  return [=, made = std::make_shared<std::optional<SurfaceDistances>>()](
-             std::span<const VertexIndex> sources) {
-    if (!*made) *made = distances_along(rest, triangles, options);
-    return (**made).once(sources);
-  };
-}
-
 /// What each disc was added for, once.
 std::vector<std::string> reasons(const CompletedRegions& completed) {
   std::vector<std::string> names;
@@ -44,12 +34,8 @@ RegionCompleter::RegionCompleter(const Source& source, const RegionChoiceOptions
       options_(options),
       radius_(kAddedRadius *
               options.radius.in(moving_parts(source.moving, rest_, triangles_).diameter)),
-      inside_(analysis.inside) {
-  DistanceOptions distances = analysis.distances;
-  distances.threads = analysis.threads;
-  distances.notes = analysis.notes;
-  distances_ = distances_when_needed(rest_, triangles_, distances);
-}
+      inside_(analysis.inside),
+      of_distances_(analysis.distances) {}
 
 RegionCompleter::RegionCompleter(const Analysis& analysis, const RegionChoiceOptions& options)
     : rest_(analysis.components.rest),
@@ -87,16 +73,21 @@ CompletedRegions RegionCompleter::completed_within(double bound, const Regions& 
 }
 
 Regions RegionCompleter::operator()(const Regions& regions, const Target& target,
-                                    const SolveOptions& options) {
+                                    const SolveOptions& options, const Context& context) {
   const bool is_soft = regions.weights.size() > 0;
   if (is_soft || options.per_region || solves_for_vertices(target.model, options.space))
     return regions;
   if (!search_) {
+    if (!distances_) {
+      distances_ = [made = distances_along(rest_, triangles_, of_distances_, context)](
+                       std::span<const VertexIndex> sources) { return made.once(sources); };
+    }
     search_.emplace(rest_, triangles_, distances_, radius_, inside_);
   }
-  CompletionOptions of_completion = options_.completion;
-  of_completion.edges = options.edges;
-  of_completion.pairing = target.pairing;
+  const CompletionOptions of_completion{.share = options_.complete,
+                                        .limit = options_.complete_limit,
+                                        .edges = options.edges.value_or(EdgeSum::all),
+                                        .pairing = target.pairing};
   const CompletedRegions completed =
       options_.triangles ? completed_within(*options_.triangles, regions, target, of_completion)
                          : mimetra::completed(regions, target.model, *search_, of_completion);
@@ -105,22 +96,22 @@ Regions RegionCompleter::operator()(const Regions& regions, const Target& target
     const Regions before = strongest(regions, static_cast<int>(kept), triangles_);
     const double share = completed.regions.triangle_share() - before.triangle_share();
     const std::size_t left_out = regions.regions.size() - kept;
-    note(options_.notes,
-         target.name + ": " + std::to_string(completed.added) +
-             (completed.added == 1 ? " disc was" : " discs were") + " added to the regions (" +
-             percent(share) + " of the triangles), which hardly see " + listed(reasons(completed)) +
-             (left_out > 0 ? "; the " + std::to_string(left_out) + " weakest regions made room"
-                           : ""),
-         Topic::completed_regions);
+    context.note(
+        target.name + ": " + std::to_string(completed.added) +
+            (completed.added == 1 ? " disc was" : " discs were") + " added to the regions (" +
+            percent(share) + " of the triangles), which hardly see " + listed(reasons(completed)) +
+            (left_out > 0 ? "; the " + std::to_string(left_out) + " weakest regions made room"
+                          : ""),
+        Topic::completed_regions);
   }
   if (completed.limited) {
-    note(options_.notes,
-         target.name + ": no more than " + percent(of_completion.limit) +
-             " of the triangles are added to the regions" +
-             (options_.triangles ? ", and no more than " + percent(*options_.triangles) + " taken"
-                                 : "") +
-             ", which leaves expressions that are hardly seen",
-         options_.triangles ? Topic::discs_beyond_bound : Topic::completion_limit);
+    context.note(
+        target.name + ": no more than " + percent(of_completion.limit) +
+            " of the triangles are added to the regions" +
+            (options_.triangles ? ", and no more than " + percent(*options_.triangles) + " taken"
+                                : "") +
+            ", which leaves expressions that are hardly seen",
+        options_.triangles ? Topic::discs_beyond_bound : Topic::completion_limit);
   }
   return completed.regions;
 }

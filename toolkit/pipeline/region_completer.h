@@ -23,7 +23,8 @@ class RegionCompleter {
   /// regions make room for the discs that are added, the last one apart, beside which as many are
   /// added as fit. Notes, under the target's name, what was added and left out
   /// (Topic::completed_regions). Throws what completed() throws.
-  Regions operator()(const Regions& regions, const Target& target, const SolveOptions& options);
+  Regions operator()(const Regions& regions, const Target& target, const SolveOptions& options,
+                     const Context& context = {});
 
  private:
   /// The most regions with the discs that complete them, within `bound` as a share of the
@@ -36,7 +37,8 @@ class RegionCompleter {
   RegionChoiceOptions options_;
   double radius_;
   std::vector<bool> inside_;  // where discs may lie, or empty
-  DistanceFunction distances_;
+  DistanceOptions of_distances_;
+  DistanceFunction distances_;  // or empty
   std::optional<DiscSearch> search_;
 };
 

@@ -26,7 +26,7 @@ constexpr double kMissedTriangles = 0.02;
 
 /// At most so many frames in memory, evenly spread.
 MeshSequence spread_frames(const std::shared_ptr<const FrameSource>& sequence, int most,
-                           int threads) {
+                           const Context& context) {
   const int frames = sequence->frames();
   const int count = std::min(frames, most);
   std::vector<int> chosen(count);
@@ -34,7 +34,7 @@ MeshSequence spread_frames(const std::shared_ptr<const FrameSource>& sequence, i
     chosen[i] = static_cast<int>(std::int64_t{i} * frames / count);
   }
   return MeshSequence(*with_rest(selected(sequence, std::move(chosen)), sequence->rest()),
-                      BlockOptions{.threads = threads});
+                      context.without_ranks());
 }
 
 Region region_of(const Disc& disc, double radius) {
@@ -65,7 +65,7 @@ RegionSelector::RegionSelector(const Source& source, const RegionChoiceOptions& 
     : rest_(source.sequence->rest()),
       triangles_(source.sequence->triangles()),
       options_(options),
-      analysis_(analysis) {
+      of_distances_(analysis.distances) {
   check_options(options);
   options_.select = Selector::transfer;
   const MovingParts moving = moving_parts(source.moving, rest_, triangles_);
@@ -74,12 +74,9 @@ RegionSelector::RegionSelector(const Source& source, const RegionChoiceOptions& 
   if (inside_.empty()) inside_ = moving.vertices;
 }
 
-const std::vector<Disc>& RegionSelector::candidates() {
+const std::vector<Disc>& RegionSelector::candidates(const Context& context) {
   if (!candidates_.empty()) return candidates_;
-  DistanceOptions of_distances = analysis_.distances;
-  of_distances.threads = analysis_.threads;
-  of_distances.notes = analysis_.notes;
-  const SurfaceDistances distances = distances_along(rest_, triangles_, of_distances);
+  const SurfaceDistances distances = distances_along(rest_, triangles_, of_distances_, context);
   candidates_ =
       farthest_discs(rest_, triangles_,
                      [&](std::span<const VertexIndex> sources) { return distances.once(sources); },
@@ -88,39 +85,37 @@ const std::vector<Disc>& RegionSelector::candidates() {
 }
 
 Regions RegionSelector::operator()(const Source& source, const Target& target,
-                                   const SolveOptions& options) {
+                                   const SolveOptions& options, const Context& context) {
   const SelectionBound bound = selection_bound(options_);
-  Regions regions = std::move(within({&bound, 1}, source, target, options).front());
+  Regions regions = std::move(within({&bound, 1}, source, target, options, context).front());
   const bool is_capped = bound.count && static_cast<int>(regions.regions.size()) == *bound.count;
   if (!is_capped && regions.triangle_share() < bound.share - kMissedTriangles) {
-    note(options_.notes,
-         target.name + ": the " + std::to_string(regions.regions.size()) +
-             " regions that serve the transfer hold " + percent(regions.triangle_share()) +
-             " of the triangles, " + percent(bound.share) + " were allowed",
-         Topic::few_discs);
+    context.note(target.name + ": the " + std::to_string(regions.regions.size()) +
+                     " regions that serve the transfer hold " + percent(regions.triangle_share()) +
+                     " of the triangles, " + percent(bound.share) + " were allowed",
+                 Topic::few_discs);
   }
   return regions;
 }
 
 std::vector<Regions> RegionSelector::within(std::span<const SelectionBound> bounds,
                                             const Source& source, const Target& target,
-                                            const SolveOptions& options) {
+                                            const SolveOptions& options, const Context& context) {
   check_selection(target, options_, options.space);
-  const MeshSequence frames = spread_frames(source.sequence, kMostFrames, options.threads);
-  const RegionSelection selection(frames, target.model,
-                                  {.noise = kNoise,
-                                   .edges = options.edges,
-                                   .pairing = target.pairing,
-                                   .threads = options.threads,
-                                   .progress = part_of(options.progress, kFullShare, 1)});
+  const MeshSequence frames = spread_frames(source.sequence, kMostFrames, context.part(0, 0));
+  const RegionSelection selection(
+      frames, target.model,
+      {.noise = kNoise, .edges = options.edges.value_or(EdgeSum::all), .pairing = target.pairing},
+      context.part(0, kFullShare));
   Regions none;
   none.vertices = static_cast<int>(rest_.rows());
   none.all_triangles = static_cast<int>(triangles_.rows());
-  none.vertex_energy = motion_on_vertices(frames, {}, {.threads = options.threads});
+  none.vertex_energy = motion_on_vertices(frames, {}, context.part(kFullShare, kFullShare));
   std::vector<Regions> result;
   for (const SelectionBound& bound : bounds) {
     std::vector<Region> chosen;
-    for (const int disc : selection.choose(candidates(), bound)) {
+    for (const int disc :
+         selection.choose(candidates(context), bound, context.part(kFullShare, 1))) {
       chosen.push_back(region_of(candidates_[disc], radius_));
     }
     if (chosen.empty()) refuse_bound(bound.share, "no disc of the surface is so small");

@@ -33,18 +33,20 @@ class RegionSelector {
   /// Throws OptionError (Topic::no_selection) for a target that is solved for vertices and
   /// (Topic::triangle_bound) where no disc fits, Cancelled, and what RegionSelection and distances
   /// throw. \pre the target is a MatchedTarget, the source is placed_at() it
-  Regions operator()(const Source& source, const Target& target, const SolveOptions& options);
+  Regions operator()(const Source& source, const Target& target, const SolveOptions& options,
+                     const Context& context = {});
   /// The same for several bounds instead of that of the options.
   std::vector<Regions> within(std::span<const SelectionBound> bounds, const Source& source,
-                              const Target& target, const SolveOptions& options);
+                              const Target& target, const SolveOptions& options,
+                              const Context& context = {});
 
  private:
-  const std::vector<Disc>& candidates();
+  const std::vector<Disc>& candidates(const Context& context);
 
   Positions rest_;
   Triangles triangles_;
   RegionChoiceOptions options_;
-  AnalysisOptions analysis_;
+  DistanceOptions of_distances_;
   double radius_ = 0;
   std::vector<bool> inside_;  // where discs may lie, or empty
   std::vector<Disc> candidates_;

@@ -11,9 +11,9 @@ namespace {
 /// How much each region counts at the target's vertices.
 RegionShares shares_on(const BlendshapeModel& model,
                        const std::vector<std::vector<VertexIndex>>& regions,
-                       const RegionalOptions& options) {
+                       const RegionalOptions& options, const Context& context) {
   const SurfaceDistances distances =
-      distances_along(model.neutral(), model.triangles(), options.distances);
+      distances_along(model.neutral(), model.triangles(), options.distances, context);
   std::vector<VertexIndex> inside;
   for (const std::vector<VertexIndex>& region : regions) {
     inside.insert(inside.end(), region.begin(), region.end());
@@ -27,16 +27,16 @@ RegionShares shares_on(const BlendshapeModel& model,
 }
 
 void note_empty_regions(const std::vector<std::vector<VertexIndex>>& regions,
-                        const RegionalOptions& options) {
+                        const RegionalOptions& options, const Context& context) {
   std::vector<int> empty;
   for (std::size_t k = 0; k < regions.size(); ++k) {
     if (regions[k].empty()) empty.push_back(static_cast<int>(k));
   }
   if (empty.empty()) return;
-  note(options.notes, options.name + ": " + (empty.size() > 1 ? "regions " : "region ") +
-                          joined(words_of(empty), ", ", " and ") +
-                          " of the source lie on no vertex here; their weights are those of the "
-                          "whole face");
+  context.note(options.name + ": " + (empty.size() > 1 ? "regions " : "region ") +
+               joined(words_of(empty), ", ", " and ") +
+               " of the source lie on no vertex here; their weights are those of the "
+               "whole face");
 }
 
 }  // namespace
@@ -57,12 +57,13 @@ std::vector<std::vector<VertexIndex>> regions_over(const Pairing& pairing, const
 
 RegionalSolution solve_regions(const FrameSource& performance, const BlendshapeModel& model,
                                const std::vector<std::vector<VertexIndex>>& regions,
-                               const Eigen::MatrixXd& global, const RegionalOptions& options) {
-  note_empty_regions(regions, options);
-  RegionShares shares = shares_on(model, regions, options);
+                               const Eigen::MatrixXd& global, const RegionalOptions& options,
+                               const Context& context) {
+  note_empty_regions(regions, options, context);
+  RegionShares shares = shares_on(model, regions, options, context);
   const LocalWeights local(performance.rest(), model, shares, all_triangles(model.triangles()),
-                           options.local);
-  RegionalWeights found = local.weights(performance, global);
+                           options.local, context.part(0, 0));
+  RegionalWeights found = local.weights(performance, global, context);
   return {std::make_shared<const RegionalAnimation>(std::make_shared<const BlendshapeModel>(model),
                                                     std::move(shares), std::move(found.beta),
                                                     performance.known_times()),

@@ -8,7 +8,6 @@
 #include "toolkit/mesh/length.h"
 #include "toolkit/model/regional_animation.h"
 #include "toolkit/pipeline/analysis.h"
-#include "toolkit/pipeline/note.h"
 #include "toolkit/regions/regions.h"
 #include "toolkit/transfer/local_weights.h"
 
@@ -22,7 +21,6 @@ struct RegionalOptions {
   Length falloff = Length::share(0.1);
   DistanceOptions distances = {};
   LocalWeightsOptions local = {};
-  Notes notes = {};
 };
 
 struct RegionalSolution {
@@ -38,6 +36,7 @@ std::vector<std::vector<VertexIndex>> regions_over(const Pairing& pairing, const
 /// on the target. Throws what partition_of_unity() and LocalWeights throw.
 RegionalSolution solve_regions(const FrameSource& performance, const BlendshapeModel& model,
                                const std::vector<std::vector<VertexIndex>>& regions,
-                               const Eigen::MatrixXd& global, const RegionalOptions& options);
+                               const Eigen::MatrixXd& global, const RegionalOptions& options,
+                               const Context& context);
 
 }  // namespace mimetra

@@ -21,20 +21,22 @@ BlendshapeModel carried_model(const BlendshapeModel& model, const Similarity& si
 }
 
 Retargeting map_between(const Animation& source, const Target& target,
-                        const TransferredTarget& transferred, const RetargetOptions& options) {
-  BlendshapeTransferOptions of_map = options.solving.blendshape;
-  of_map.edges = options.solving.edges;
-  of_map.pairing = transferred.pairing;
-  of_map.threads = options.threads;
+                        const TransferredTarget& transferred, const RetargetOptions& options,
+                        const Context& context) {
+  const BlendshapeTransferOptions of_map{.ridge = options.ridge,
+                                         .sparsity = options.sparsity,
+                                         .symmetry = options.symmetry,
+                                         .exclusive = options.exclusive,
+                                         .pairing = transferred.pairing};
   const BlendshapeModel there = carried_model(source.model(), transferred.similarity);
   if (transferred.pairing) {
     return linear_transfer(there, target.model, all_triangles(target.model.get().triangles()),
-                           of_map);
+                           of_map, context);
   }
   // Polygons may be cut along other diagonals than the source's.
   const MatchedTarget matched(source, target);
   const BlendshapeModel& model = (*matched).model;
-  return linear_transfer(there, model, all_triangles(model.triangles()), of_map);
+  return linear_transfer(there, model, all_triangles(model.triangles()), of_map, context);
 }
 
 }  // namespace
@@ -49,20 +51,23 @@ void check_rigs(const Animation& source, const Target& target, const std::string
 }
 
 RetargetResult retarget(const Animation& source, const Target& target,
-                        const RetargetOptions& options) {
+                        const RetargetOptions& options, const Context& context) {
+  check_options(options);
   check_rigs(source, target, options.source_name);
-  TransferOptions of_transfer;
-  of_transfer.full = true;
-  of_transfer.source.name = options.source_name;
-  of_transfer.source.model_driven = true;
-  of_transfer.solving = options.solving;
-  of_transfer.solving.space = Space::blendshape;
-  of_transfer.threads = options.threads;
-  of_transfer.progress = options.progress;
-  of_transfer.notes = options.notes;
-  TransferResult result = transfer(source, {target}, of_transfer);
+  const TransferOptions of_transfer{.full = true,
+                                    .source = {.name = options.source_name, .model_driven = true},
+                                    .solve = {.space = Space::blendshape,
+                                              .axes = options.axes,
+                                              .smoothness = options.smoothness,
+                                              .ridge = options.ridge,
+                                              .sparsity = options.sparsity,
+                                              .symmetry = options.symmetry,
+                                              .exclusive = options.exclusive}};
+  TransferResult result = transfer(source, {target}, of_transfer, context);
   RetargetResult made{std::move(result.targets.front())};
-  if (options.keep_map) made.map = map_between(source, target, made.transferred, options);
+  if (options.keep_map) {
+    made.map = map_between(source, target, made.transferred, options, context.part(1, 1));
+  }
   return made;
 }
 

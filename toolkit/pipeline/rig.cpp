@@ -12,7 +12,6 @@
 #include "toolkit/pipeline/target_notes.h"
 #include "toolkit/pipeline/usability.h"
 #include "toolkit/transfer/following_parts.h"
-#include "toolkit/transfer/seams.h"
 #include "toolkit/transfer/transfer_error.h"
 
 namespace mimetra {
@@ -41,23 +40,14 @@ Regions moving_part(const Positions& rest, const PositionsView& pose, const Tria
   return moving;
 }
 
-Weld seams_of(const FrameSource& source, const Target& target, int threads) {
-  const BlendshapeModel& model = target.model;
-  return target.pairing ? closed_seams(source, model.neutral(), model.triangles(), *target.pairing,
-                                       {.threads = threads})
-                        : closed_seams(source, model.neutral(), {.threads = threads});
-}
-
 /// Displacements of the target that follow each frame of the source, 3N x D.
 class ExpressionTransfer {
  public:
   ExpressionTransfer(const FrameSource& source, const Target& target, const Weld& weld,
-                     const RigOptions& options)
-      : source_(source), target_(target), options_(options.solving.vertex) {
-    options_.outside = Outside::fixed;
-    options_.weld = weld;
-    options_.pairing = target.pairing;
-    options_.threads = 1;
+                     TriangleWeight triangle_weight, const Context& context)
+      : source_(source),
+        target_(target),
+        options_{.triangle_weight = triangle_weight, .weld = weld, .pairing = target.pairing} {
     const BlendshapeModel& model = target.model;
     displacements_ = Eigen::MatrixXd::Zero(model.neutral().size(), source.frames());
     std::vector<int> slivers(static_cast<std::size_t>(source.frames()), 0);
@@ -66,8 +56,7 @@ class ExpressionTransfer {
                                                             weld, *target.pairing);
     }
     parallel_for(
-        source.frames(), options.threads, [&](int j) { slivers[j] = transfer(j); },
-        part_of(options.progress, 0, kTransferPart));
+        source.frames(), [&](int j) { slivers[j] = transfer(j, context.serial()); }, context);
     slivers_ = std::ranges::max(slivers);
   }
 
@@ -86,7 +75,7 @@ class ExpressionTransfer {
 
  private:
   /// Returns the slivers of the target.
-  int transfer(int j) {
+  int transfer(int j, const Context& context) {
     const Frames frame = source_.read(j, 1);
     const PositionsView pose(frame.data(), source_.rest().rows(), 3);
     const Regions moving = moving_part(source_.rest(), pose, source_.triangles());
@@ -96,11 +85,11 @@ class ExpressionTransfer {
     of_expression.inside = selection.inside;
     const BlendshapeModel& model = target_.model;
     const VertexTransfer solver(source_.rest(), model.neutral(), model.triangles(),
-                                selection.triangles, of_expression);
+                                selection.triangles, of_expression, context);
     const MeshSequence single(source_.shared_connectivity(), frame, {}, source_.rest());
     const Eigen::Map<const Eigen::RowVectorXd> neutral(model.neutral().data(),
                                                        model.neutral().size());
-    displacements_.col(j) = (solver.frames(single).row(0) - neutral).transpose();
+    displacements_.col(j) = (solver.frames(single, context).row(0) - neutral).transpose();
     return solver.degenerate_target_triangles();
   }
 
@@ -114,7 +103,7 @@ class ExpressionTransfer {
 /// The target's own expressions that the source has, by the same name or one written otherwise, are
 /// examples, too, unless one is given.
 void add_own_expressions(std::vector<RigExample>& examples, const BlendshapeModel& target,
-                         const ShapeBasis& expressions, const Notes& notes) {
+                         const ShapeBasis& expressions, const Context& context) {
   std::vector<std::string> renamed;
   for (int own = 0; own < target.expressions().size(); ++own) {
     const std::string& name = target.expressions().names[static_cast<std::size_t>(own)];
@@ -129,40 +118,40 @@ void add_own_expressions(std::vector<RigExample>& examples, const BlendshapeMode
       return expression && *expression == known;
     };
     if (std::ranges::any_of(examples, is_it)) {
-      note(notes, "the example '" + name + "' replaces the target's own expression");
+      context.note("the example '" + name + "' replaces the target's own expression");
       continue;
     }
     examples.push_back(
         {name, target.pose(Eigen::VectorXd::Unit(target.expressions().size(), own)), known});
   }
   if (renamed.empty()) return;
-  note(notes, "expressions of the target that the source writes otherwise have its names: " +
-                  listed(renamed));
+  context.note("expressions of the target that the source writes otherwise have its names: " +
+               listed(renamed));
 }
 
 /// Notes examples no vertex of which stays where it is in the neutral.
 void note_places(const std::vector<RigExample>& examples, const BlendshapeModel& model,
-                 const Notes& notes) {
+                 const Context& context) {
   const double size = diameter(model.neutral(), model.triangles());
   for (const RigExample& example : examples) {
     const double least = least_move(model.neutral(), example.pose, model.triangles());
     if (least < kStillShare * size) continue;
-    note(notes, "example '" + example.name + "': every vertex lies " + readable(least) +
-                    " and more from the neutral, in a face of " + readable(size) +
-                    "; it seems to stand elsewhere: align it to the neutral (`mimetra align`)");
+    context.note("example '" + example.name + "': every vertex lies " + readable(least) +
+                 " and more from the neutral, in a face of " + readable(size) +
+                 "; it seems to stand elsewhere: align it to the neutral (`mimetra align`)");
   }
 }
 
 /// Notes examples that are the neutral.
 void note_still(const std::vector<RigExample>& examples, const Positions& neutral,
-                const Notes& notes) {
+                const Context& context) {
   std::vector<std::string> still;
   for (const RigExample& example : examples) {
     if (example.pose == neutral) still.push_back(example.name);
   }
   if (still.empty()) return;
-  note(notes, "examples that are the target's neutral: " + listed(still) +
-                  "; a true shape that does not move makes its expression do nothing");
+  context.note("examples that are the target's neutral: " + listed(still) +
+               "; a true shape that does not move makes its expression do nothing");
 }
 
 /// The expressions of the source on the target, then the target's others.
@@ -215,25 +204,26 @@ MeshSequence single_frame(const BlendshapeModel& model, int expression) {
 }
 
 /// Counts flipped triangles of the source's expressions.
-void count_flipped(Rig& rig, const FrameSource& source, const Target& target, int threads) {
-  const TransferErrorOptions of_error{.pairing = target.pairing, .threads = 1};
-  parallel_for(source.frames(), threads, [&](int j) {
+void count_flipped(Rig& rig, const FrameSource& source, const Target& target,
+                   const Context& context) {
+  const auto count = [&](int j) {
     const MeshSequence single(source.shared_connectivity(), source.read(j, 1), {}, source.rest());
-    rig.expressions[j].flipped =
-        transfer_error(single, single_frame(rig.model, j), {}, of_error).flipped;
-  });
+    rig.expressions[j].flipped = transfer_error(single, single_frame(rig.model, j), {},
+                                                {.pairing = target.pairing}, context.serial())
+                                     .flipped;
+  };
+  parallel_for(source.frames(), count, context);
 }
 
 /// The share of the deformation that the transferred expressions lack.
 double missed_by(const BlendshapeModel& transferred, const FrameSource& source,
-                 const Target& target, int threads) {
+                 const Target& target, const Context& context) {
   const Eigen::MatrixXd each = Eigen::MatrixXd::Identity(source.frames(), source.frames());
   const Animation animation(std::make_shared<const BlendshapeModel>(transferred), each);
-  return missed_share(
-      transfer_error(source, animation, {}, {.pairing = target.pairing, .threads = threads}));
+  return missed_share(transfer_error(source, animation, {}, {.pairing = target.pairing}, context));
 }
 
-void note_usability(const Rig& rig, const Target& target, const Notes& notes) {
+void note_usability(const Rig& rig, const Target& target, const Context& context) {
   std::vector<std::string> flipped, still;
   double all = 0;
   for (const RiggedExpression& each : rig.expressions) {
@@ -246,18 +236,18 @@ void note_usability(const Rig& rig, const Target& target, const Notes& notes) {
     }
   }
   if (!still.empty()) {
-    note(notes, target.name + ": expressions that do not move it: " + listed(still));
+    context.note(target.name + ": expressions that do not move it: " + listed(still));
   }
   const double triangles =
       static_cast<double>(rig.model.triangles().rows()) * static_cast<double>(rig.weights.cols());
   if (rig.missed > kUnusableMissedShare) {
-    note(notes, target.name + ": the rig may not be usable: " + percent(rig.missed) +
-                    " of the deformation is missing; look whether source and target have the same "
-                    "vertices in the same order, or are paired well, and both are neutral");
+    context.note(target.name + ": the rig may not be usable: " + percent(rig.missed) +
+                 " of the deformation is missing; look whether source and target have the same "
+                 "vertices in the same order, or are paired well, and both are neutral");
   }
   if (all > kUnusableFlippedShare * triangles) {
-    note(notes, target.name + ": the rig may not be usable: flipped triangles in " +
-                    listed(flipped) + "; look at these expressions");
+    context.note(target.name + ": the rig may not be usable: flipped triangles in " +
+                 listed(flipped) + "; look at these expressions");
   }
 }
 
@@ -283,36 +273,35 @@ std::shared_ptr<const Animation> frame_of_each_expression(const BlendshapeModel&
 }
 
 Rig rig(const BlendshapeModel& source, const Target& given, std::vector<RigExample> examples,
-        const RigOptions& options) {
-  check_options(options.solving);
+        const RigOptions& options, const Context& context) {
+  check_options(options);
+  check_options(options.examples);
   const auto frames = frame_of_each_expression(source);
-  const MatchedTarget matched(*frames, given, {.threads = options.threads, .notes = options.notes});
+  const Context start = context.part(0, 0), end = context.part(1, 1);
+  const MatchedTarget matched(*frames, given, {}, start);
   const Target& target = *matched;
-  SolveOptions solving = options.solving;
-  solving.notes = options.notes;
-  const PlacedSource placed =
-      placed_at(target, prepare_source(frames, {.model_driven = true}), solving);
+  const Source still = prepare_source(frames, {.model_driven = true}, {}, start.quiet());
+  const PlacedSource placed = placed_at(target, still, options.axes, context);
   const FrameSource& sequence = *placed.source.sequence;
   const BlendshapeModel& model = target.model;
-  const Weld weld = seams_of(sequence, target, options.threads);
-  const ExpressionTransfer transfer(sequence, target, weld, options);
+  const Weld weld = closed_seams_of(placed.source, target, start);
+  const ExpressionTransfer transfer(sequence, target, weld, options.triangle_weight,
+                                    context.part(0, kTransferPart));
   if (transfer.slivers() > 0) {
-    note(options.notes, target.name + ": " + std::to_string(transfer.slivers()) +
-                            " slivers, triangles of hardly any area, follow their neighbours");
+    context.note(target.name + ": " + std::to_string(transfer.slivers()) +
+                 " slivers, triangles of hardly any area, follow their neighbours");
   }
-  const TargetNotes notes(target.name, options.notes);
+  const TargetNotes notes(target.name, context);
   notes.add(transfer.following());
   notes.add_almost_welded(model);
   const BlendshapeModel transferred(model.shared_connectivity(), model.neutral(),
                                     {source.expressions().names, transfer.displacements()});
   check_sizes(examples, model.neutral(), target.name);
-  note_places(examples, model, options.notes);
-  add_own_expressions(examples, model, source.expressions(), options.notes);
-  note_still(examples, model.neutral(), options.notes);
-  ExampleRigOptions of_examples = options.examples;
-  of_examples.threads = options.threads;
-  of_examples.progress = part_of(options.progress, kTransferPart, 1);
-  ExampleRig fitted = fit_to_examples(transferred, examples, weld, of_examples);
+  note_places(examples, model, context);
+  add_own_expressions(examples, model, source.expressions(), context);
+  note_still(examples, model.neutral(), context);
+  ExampleRig fitted = fit_to_examples(transferred, examples, weld, options.examples,
+                                      context.part(kTransferPart, 1));
   Rig result;
   for (const RigExample& example : examples) result.examples.push_back(example.name);
   result.weights = std::move(fitted.weights);
@@ -321,9 +310,9 @@ Rig rig(const BlendshapeModel& source, const Target& given, std::vector<RigExamp
   result.similarity = placed.similarity;
   result.match = matched.report();
   result.pairing = target.pairing;
-  result.missed = missed_by(transferred, sequence, target, options.threads);
-  count_flipped(result, sequence, target, options.threads);
-  note_usability(result, target, options.notes);
+  result.missed = missed_by(transferred, sequence, target, end);
+  count_flipped(result, sequence, target, end);
+  note_usability(result, target, context);
   return result;
 }
 

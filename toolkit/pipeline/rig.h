@@ -11,14 +11,13 @@
 namespace mimetra {
 
 struct RigOptions {
-  /// Axes and the weight of triangles count; vertices are what is solved for.
-  SolveOptions solving = {};
-  /// Their threads and progress are those of the rig.
+  Axes axes = Axes::fit;
+  TriangleWeight triangle_weight = TriangleWeight::unit;
   ExampleRigOptions examples = {};
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  Progress progress = {};
-  Notes notes = {};
+
+  static constexpr Option kAxes{"axes", &RigOptions::axes};
+  static constexpr Option kTriangleWeight{"triangle_weight", &RigOptions::triangle_weight};
+  static constexpr auto declared() { return std::tuple(kAxes, kTriangleWeight); }
 };
 
 /// Where an expression of a rig comes from.
@@ -79,7 +78,7 @@ std::shared_ptr<const Animation> frame_of_each_expression(const BlendshapeModel&
 /// Throws what frame_of_each_expression(), MatchedTarget(), placed_at(),
 /// check_sizes(), closed_seams(), VertexTransfer and fit_to_examples() throw; Cancelled.
 Rig rig(const BlendshapeModel& source, const Target& target, std::vector<RigExample> examples = {},
-        const RigOptions& options = {});
+        const RigOptions& options = {}, const Context& context = {});
 
 /// Throws MismatchError for an example in another unit than the neutral (N x 3) of the target of
 /// this name.

@@ -17,6 +17,7 @@ struct SimplifiedRegions {
 /// RegionShape::support, which is no disc; what simplify(), analyse() and choose_regions() throw.
 SimplifiedRegions regions_by_simplified(const Source& source, const SimplifyOptions& simplifying,
                                         const AnalysisOptions& analysis = {},
-                                        const RegionChoiceOptions& choice = {});
+                                        const RegionChoiceOptions& choice = {},
+                                        const Context& context = {});
 
 }  // namespace mimetra

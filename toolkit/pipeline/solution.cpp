@@ -25,42 +25,43 @@ constexpr double kUnsmoothedShare = 0.9;
 /// The weights of the whole face, as a part of those of each region.
 constexpr double kGlobalShare = 0.2;
 
+EdgeSum edges_of(const SolveOptions& options) {
+  return options.edges.value_or(EdgeSum::all);
+}
+
 RegionalOptions regional_options(const Target& target, const SolveOptions& options) {
-  RegionalOptions of_regions{target.name, options.falloff.value_or(SolveOptions::kUsualFalloff),
-                             options.distances, options.local, options.notes};
-  of_regions.distances.threads = of_regions.local.threads = options.threads;
-  of_regions.local.ranks = options.ranks;
-  of_regions.local.edges = options.edges;
-  of_regions.local.pairing = target.pairing;
-  of_regions.local.progress = part_of(options.progress, kGlobalShare, 1);
-  return of_regions;
+  return {target.name,
+          options.falloff.value_or(SolveOptions::kUsualFalloff),
+          options.distances.value_or(DistanceOptions()),
+          {.ridge = options.region_ridge, .edges = edges_of(options), .pairing = target.pairing}};
 }
 
 Solution solve_blendshapes(const Source& source, const Target& target, const Selection& selection,
-                           const SolveOptions& options) {
+                           const SolveOptions& options, const Context& context) {
   const Stopwatch stopwatch;
   const BlendshapeModel& model = target.model;
-  BlendshapeTransferOptions of_space = options.blendshape;
-  of_space.threads = options.threads;
-  of_space.ranks = options.ranks;
-  of_space.progress = options.progress;
-  of_space.edges = options.edges;
-  of_space.pairing = target.pairing;
-  of_space.smoothness = options.smoothness;
-  of_space.rules = target.rules;
+  BlendshapeTransferOptions of_space{.edges = edges_of(options),
+                                     .ridge = options.ridge,
+                                     .sparsity = options.sparsity,
+                                     .smoothness = options.smoothness,
+                                     .symmetry = options.symmetry,
+                                     .exclusive = options.exclusive,
+                                     .rules = target.rules,
+                                     .pairing = target.pairing};
   const bool is_soft = selection.weights.size() > 0;
   if (is_soft) of_space.triangle_weights = triangle_weights(model.triangles(), selection.weights);
   const FrameSource& performance = *source.sequence;
   const bool regional = options.per_region && !selection.regions.empty();
-  if (regional) of_space.progress = part_of(options.progress, 0, kGlobalShare);
+  const double global = regional ? kGlobalShare : 1;
   const BlendshapeTransfer transfer(performance.rest(), model,
                                     regional ? whole(target).triangles : selection.triangles,
-                                    of_space);
-  const Eigen::MatrixXd beta = transfer.weights(performance);
+                                    of_space, context.part(0, 0));
+  const Eigen::MatrixXd beta = transfer.weights(performance, context.part(0, global));
   Solution solution;
   if (regional) {
-    RegionalSolution local = solve_regions(performance, model, selection.regions, beta,
-                                           regional_options(target, options));
+    RegionalSolution local =
+        solve_regions(performance, model, selection.regions, beta,
+                      regional_options(target, options), context.part(global, 1));
     solution.violation = local.violation;
     solution.regional = std::move(local.animation);
     solution.sequence = solution.regional;
@@ -74,7 +75,7 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
   solution.conditions = transfer.conditions();
   solution.degenerate_source_triangles = solution.conditions.degenerate_source_triangles;
   solution.degenerate_target_triangles = solution.conditions.degenerate_target_triangles;
-  const TargetNotes notes(target.name, options.notes);
+  const TargetNotes notes(target.name, context);
   notes.add(solution.conditions);
   notes.add_degenerate({.source = solution.degenerate_source_triangles,
                         .target = solution.degenerate_target_triangles,
@@ -82,7 +83,7 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
   // Another face's expressions are never quite the source's: with an exact neutral, too, some want
   // to be negative.
   const bool may_be_wrong = !source.neutral_is_known;
-  if (may_be_wrong && transfer.rest_looks_unneutral(performance, beta)) {
+  if (may_be_wrong && transfer.rest_looks_unneutral(performance, beta, context.part(1, 1))) {
     notes.add(
         "many expressions want to be negative, so the source's rest pose is likely not its "
         "neutral",
@@ -91,8 +92,7 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
   return solution;
 }
 
-void check_anchor(const VertexTransferOptions& options, const Target& target,
-                  const Selection& selection) {
+void check_anchor(const SolveOptions& options, const Target& target, const Selection& selection) {
   if (!options.anchor) return;
   const BlendshapeModel& model = target.model;
   const bool is_vertex = *options.anchor == Anchor::vertex;
@@ -161,28 +161,31 @@ class WatchedSink : public FrameSink {
 };
 
 Solution solve_vertices(const Source& source, const Target& target, const Selection& selection,
-                        const SolveOptions& options) {
+                        const SolveOptions& options, const Context& context) {
   const Stopwatch stopwatch;
   const BlendshapeModel& model = target.model;
-  VertexTransferOptions of_space = options.vertex;
-  of_space.inside = selection.inside;
-  of_space.weights = selection.weights;
-  of_space.threads = options.threads;
-  of_space.ranks = options.ranks;
-  check_anchor(of_space, target, selection);
+  check_anchor(options, target, selection);
   const FrameSource& performance = *source.sequence;
-  of_space.pairing = target.pairing;
-  of_space.weld =
-      closed_seams_of(source, target, {options.threads, part_of(options.progress, 0, kSeamShare)});
+  VertexTransferOptions of_space{
+      .triangle_weight = options.triangle_weight,
+      .outside = options.outside,
+      .inside = selection.inside,
+      .weights = selection.weights,
+      .weld = closed_seams_of(source, target, context.part(0, kSeamShare).without_ranks()),
+      .pairing = target.pairing,
+      .outside_weight = options.outside_weight,
+      .outside_smoothness = options.outside_smoothness,
+      .anchor = options.anchor,
+      .anchor_vertex = options.anchor_vertex};
   if (target.pairing) {
     of_space.following = std::make_shared<FollowingParts>(model.neutral(), model.triangles(),
                                                           of_space.weld, *target.pairing);
   }
   const bool smooths = options.smoothness > 0;
   const double solved = smooths ? kUnsmoothedShare : 1;
-  of_space.progress = part_of(options.progress, kSeamShare, solved);
+  const Context solving = context.part(kSeamShare, solved);
   const VertexTransfer transfer(performance.rest(), model.neutral(), model.triangles(),
-                                selection.triangles, of_space);
+                                selection.triangles, of_space, solving.part(0, 0));
   const auto store = std::make_shared<FrameStore>(
       SequenceHeader{model.shared_connectivity(), performance.times(), model.neutral(), true,
                      performance.times_are_known()});
@@ -191,10 +194,10 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   FrameSink& sink = watched ? static_cast<FrameSink&>(*watched) : *store;
   if (smooths) {
     const MotionFilter filter(performance.times(), options.smoothness);
-    sink.write(0, filter(transfer.frames(performance),
-                         {options.threads, part_of(options.progress, solved, 1)}));
+    sink.write(
+        0, filter(transfer.frames(performance, solving), context.part(solved, 1).without_ranks()));
   } else {
-    transfer.write_frames(performance, sink);
+    transfer.write_frames(performance, sink, solving);
   }
   sink.commit();
   Solution solution;
@@ -206,7 +209,7 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   if (watched) {
     solution.following_parts = described(*of_space.following, watched->farthest(), model);
   }
-  const TargetNotes notes(target.name, options.notes);
+  const TargetNotes notes(target.name, context);
   notes.add(solution.following_parts);
   notes.add_almost_welded(model);
   notes.add_unmoved(model.connectivity());
@@ -216,8 +219,7 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   return solution;
 }
 
-Similarity similarity_between(const Positions& rest, const Target& target,
-                              const SolveOptions& options) {
+Similarity similarity_between(const Positions& rest, const Target& target, Axes axes) {
   const BlendshapeModel& model = target.model;
   if (!target.pairing && rest == model.neutral()) return {};
   const std::vector<VertexIndex> used = target.pairing
@@ -226,7 +228,7 @@ Similarity similarity_between(const Positions& rest, const Target& target,
   const Positions to = model.neutral()(used, Eigen::all);
   const Positions from =
       target.pairing ? target.pairing->carried(rest, used) : rest(used, Eigen::all);
-  switch (options.axes) {
+  switch (axes) {
     case Axes::fit:
       try {
         return similarity_fit(from, to);
@@ -270,7 +272,7 @@ bool solves_for_vertices(const BlendshapeModel& target, Space space) {
 }
 
 void check_soft_border(const Target& target, const SolveOptions& options) {
-  if (options.vertex.outside != Outside::identity) return;
+  if (options.outside != Outside::identity) return;
   if (!solves_for_vertices(target.model, options.space)) return;
   throw OptionError(Topic::soft_outside,
                     "triangles that keep their shape hold nothing, but a soft border ends where "
@@ -289,8 +291,7 @@ void check_regional(const Target& target, const SolveOptions& options) {
     throw std::invalid_argument(
         "smoothness: weights of each region are found frame by frame; it must be 0");
   }
-  if (options.blendshape.symmetry > 0 || options.blendshape.exclusive != Exclusive::none ||
-      !target.rules.empty()) {
+  if (options.symmetry > 0 || options.exclusive != Exclusive::none || !target.rules.empty()) {
     throw std::invalid_argument("per_region: " + target.name +
                                 ": weights of each region follow no rules of expressions, neither "
                                 "symmetry nor exclusive");
@@ -304,14 +305,12 @@ void check_rules(const Target& target, const SolveOptions& options) {
   const BlendshapeModel& model = target.model;
   if (solves_for_vertices(model, options.space)) return;
   const auto& names = model.expressions().names;
-  const BlendshapeTransferOptions& of_space = options.blendshape;
-  const ExpressionRules rules(names, target.rules, of_space.exclusive);
-  if (of_space.symmetry > 0 && rules.unknowns().pairs.empty()) {
+  const ExpressionRules rules(names, target.rules, options.exclusive);
+  if (options.symmetry > 0 && rules.unknowns().pairs.empty()) {
     throw OptionError(Topic::no_pairs,
                       target.name + ": no two of its expressions are named as left and right");
   }
-  if (known_exclusives(names, of_space.exclusive).empty() &&
-      of_space.exclusive != Exclusive::none) {
+  if (known_exclusives(names, options.exclusive).empty() && options.exclusive != Exclusive::none) {
     throw OptionError(Topic::no_exclusives,
                       target.name +
                           ": none of its expressions are named as those of ARKit that exclude "
@@ -346,26 +345,27 @@ Selection whole(const Target& target) {
   return {all_triangles(target.model.get().triangles()), {}};
 }
 
-PlacedSource placed_at(const Target& target, const Source& source, const SolveOptions& options) {
-  PlacedSource placed{source, similarity_between(source.sequence->rest(), target, options)};
+PlacedSource placed_at(const Target& target, const Source& source, Axes axes,
+                       const Context& context) {
+  PlacedSource placed{source, similarity_between(source.sequence->rest(), target, axes)};
   placed.source.sequence = carried(source.sequence, placed.similarity);
   for (RigidTransform& motion : placed.source.motion) motion = placed.similarity.carry(motion);
   if (placed.similarity.mirrors()) {
-    note(options.notes, target.name + ": is the source's mirror image; its motion is mirrored too");
+    context.note(target.name + ": is the source's mirror image; its motion is mirrored too");
   }
   return placed;
 }
 
-Weld closed_seams_of(const Source& source, const Target& target, const BlockOptions& options) {
+Weld closed_seams_of(const Source& source, const Target& target, const Context& context) {
   const FrameSource& performance = *source.sequence;
   const BlendshapeModel& model = target.model;
   return target.pairing ? closed_seams(performance, model.neutral(), model.triangles(),
-                                       *target.pairing, options)
-                        : closed_seams(performance, model.neutral(), options);
+                                       *target.pairing, context)
+                        : closed_seams(performance, model.neutral(), context);
 }
 
 Solution solve(const Source& source, const Target& target, const Selection& selection,
-               const SolveOptions& options) {
+               const SolveOptions& options, const Context& context) {
   check_options(options);
   const BlendshapeModel& model = target.model;
   if (options.space == Space::blendshape && model.expressions().size() == 0) {
@@ -374,8 +374,8 @@ Solution solve(const Source& source, const Target& target, const Selection& sele
   check_rules(target, options);
   check_weights_of(selection, target, options);
   return solves_for_vertices(model, options.space)
-             ? solve_vertices(source, target, selection, options)
-             : solve_blendshapes(source, target, selection, options);
+             ? solve_vertices(source, target, selection, options, context)
+             : solve_blendshapes(source, target, selection, options, context);
 }
 
 }  // namespace mimetra

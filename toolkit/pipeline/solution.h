@@ -57,15 +57,24 @@ constexpr std::string_view choice_name(Axes value) {
 struct SolveOptions {
   Space space = Space::automatic;
   Axes axes = Axes::fit;
-  /// Of eq. 10 and 12.
-  EdgeSum edges = EdgeSum::all;
+  /// The sum of eq. 10 and 12: all edges by default; in a transfer, the edges that the analysis'
+  /// compatibility names.
+  std::optional<EdgeSum> edges = {};
   /// Time constant in seconds: weights, or in vertex space positions, are drawn to a small second
   /// derivative (smooth_weights(), MotionFilter).
   double smoothness = 0;
-  /// Of each space; their threads, ranks and progress, edges, smoothness, the vertices inside,
-  /// those that are one and the rules of expressions are those of the solve and the target.
-  BlendshapeTransferOptions blendshape = {};
-  VertexTransferOptions vertex = {};
+  /// Blendshape space, as in BlendshapeTransferOptions.
+  double ridge = 0;
+  double sparsity = 0;
+  double symmetry = 0;
+  Exclusive exclusive = Exclusive::none;
+  /// Vertex space, as in VertexTransferOptions.
+  TriangleWeight triangle_weight = TriangleWeight::unit;
+  Outside outside = Outside::fixed;
+  double outside_weight = VertexTransferOptions().outside_weight;
+  double outside_smoothness = 0;
+  std::optional<Anchor> anchor = {};
+  VertexIndex anchor_vertex = -1;
   /// Blendshape space: each region has weights of its own, and what lies around them too; all
   /// triangles are looked at.
   bool per_region = false;
@@ -74,17 +83,10 @@ struct SolveOptions {
   /// take (bordered_selection()); without it a region's border is hard, and tears meshes without
   /// expressions from what lies outside: kBareFalloff is wide enough for them.
   std::optional<Length> falloff = {};
-  /// Its threads, ranks, progress, edges and pairing are those of the solve.
-  LocalWeightsOptions local = {};
-  /// By which that is measured; of a transfer those of the analysis. Threads are those of the
-  /// solve.
-  DistanceOptions distances = {};
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  /// Processes that frames are dealt out to, as in BlockOptions.
-  const Ranks* ranks = nullptr;
-  Progress progress = {};
-  Notes notes = {};
+  /// Pull of each region's weights towards those of the whole face: LocalWeightsOptions::ridge.
+  double region_ridge = LocalWeightsOptions().ridge;
+  /// How the falloff is measured: by heat distances by default; in a transfer, as in the analysis.
+  std::optional<DistanceOptions> distances = {};
 
   static constexpr Length kUsualFalloff = Length::share(0.1);
   static constexpr Length kBareFalloff = Length::share(0.2);
@@ -95,7 +97,27 @@ struct SolveOptions {
       "smoothness", &SolveOptions::smoothness, {.minimum = 0, .maximum = 60}, "s"};
   static constexpr Option kPerRegion{"per_region", &SolveOptions::per_region};
   static constexpr Option kFalloff{"falloff", &SolveOptions::falloff, {.minimum = 1e-9}};
-  static constexpr auto declared() { return std::tuple(kSpace, kAxes, kSmoothness, kFalloff); }
+  static constexpr Option kRidge{"ridge", &SolveOptions::ridge,
+                                 BlendshapeTransferOptions::kRidge.range};
+  static constexpr Option kSparsity{"sparsity", &SolveOptions::sparsity,
+                                    BlendshapeTransferOptions::kSparsity.range};
+  static constexpr Option kSymmetry{"symmetry", &SolveOptions::symmetry,
+                                    BlendshapeTransferOptions::kSymmetry.range};
+  static constexpr Option kExclusive{"exclusive", &SolveOptions::exclusive};
+  static constexpr Option kTriangleWeight{"triangle_weight", &SolveOptions::triangle_weight};
+  static constexpr Option kOutside{"outside", &SolveOptions::outside};
+  static constexpr Option kOutsideWeight{"outside_weight", &SolveOptions::outside_weight,
+                                         VertexTransferOptions::kOutsideWeight.range};
+  static constexpr Option kOutsideSmoothness{"outside_smoothness",
+                                             &SolveOptions::outside_smoothness,
+                                             VertexTransferOptions::kOutsideSmoothness.range};
+  static constexpr Option kRegionRidge{"region_ridge", &SolveOptions::region_ridge,
+                                       LocalWeightsOptions::kRidge.range};
+  static constexpr auto declared() {
+    return std::tuple(kSpace, kAxes, kSmoothness, kRidge, kSparsity, kSymmetry, kExclusive,
+                      kTriangleWeight, kOutside, kOutsideWeight, kOutsideSmoothness, kPerRegion,
+                      kFalloff, kRegionRidge);
+  }
 };
 
 /// What eq. 10 and 12 sum over.
@@ -114,8 +136,8 @@ struct PlacedSource {
 /// unit, place and axes are the target's; bit by bit the source itself where both are equal. With
 /// Axes::none it is not turned. Notes a mirrored target under its name. Throws OptionError
 /// (Topic::undetermined_axes) where the rest poses leave the rotation open. \pre a MatchedTarget
-PlacedSource placed_at(const Target& target, const Source& source,
-                       const SolveOptions& options = {});
+PlacedSource placed_at(const Target& target, const Source& source, Axes axes = Axes::fit,
+                       const Context& context = {});
 
 /// A target's poses that follow a source.
 struct Solution {
@@ -167,7 +189,7 @@ Selection selection_of(const Regions& regions, const Target& target);
 Selection whole(const Target& target);
 
 /// closed_seams() of a source and a target. \pre as of solve()
-Weld closed_seams_of(const Source& source, const Target& target, const BlockOptions& = {});
+Weld closed_seams_of(const Source& source, const Target& target, const Context& context = {});
 
 /// Solves on the selected triangles in blendshape or vertex space; in vertex space closed_seams()
 /// stay closed. Notes, under the target's name, expressions that the triangles do not or hardly
@@ -191,6 +213,6 @@ Weld closed_seams_of(const Source& source, const Target& target, const BlockOpti
 /// or a target has none, or the selection has weights too; and for weights that are not in [0, 1],
 /// one a vertex.
 Solution solve(const Source& source, const Target& target, const Selection& selection,
-               const SolveOptions& options = {});
+               const SolveOptions& options = {}, const Context& context = {});
 
 }  // namespace mimetra

@@ -20,29 +20,26 @@ bool has_border(const Selection& selection) {
 }  // namespace
 
 TransferError error_of(const Solution& solution, const Source& source, const Target& target,
-                       const Selection& selection, const SolveOptions& options) {
-  TransferErrorOptions of_error{.edges = options.edges,
+                       const Selection& selection, const SolveOptions& options,
+                       const Context& context) {
+  TransferErrorOptions of_error{.edges = options.edges.value_or(EdgeSum::all),
                                 .pairing = target.pairing,
                                 .inside = selection.inside,
-                                .weights = selection.weights,
-                                .threads = options.threads,
-                                .progress = options.progress,
-                                .ranks = options.ranks};
-  if (has_border(selection)) {
-    of_error.weld =
-        closed_seams_of(source, target, {options.threads, part_of(options.progress, 0, 0.2)});
-    of_error.progress = part_of(options.progress, 0.2, 1);
+                                .weights = selection.weights};
+  const double seams = has_border(selection) ? 0.2 : 0;
+  if (seams > 0) {
+    of_error.weld = closed_seams_of(source, target, context.part(0, seams).without_ranks());
   }
-  return transfer_error(*source.sequence, *solution.sequence, selection.triangles, of_error);
+  return transfer_error(*source.sequence, *solution.sequence, selection.triangles, of_error,
+                        context.part(seams, 1));
 }
 
-void note_crease(const TransferError& error, const Target& target, const Notes& notes) {
+void note_crease(const TransferError& error, const Target& target, const Context& context) {
   if (error.crease < kVisibleCrease) return;
-  note(notes,
-       target.name + ": the surface folds at the regions' border by " + readable(error.crease, 2) +
-           " degrees more than the source does, by " + readable(error.largest_crease, 2) +
-           " where it is worst: a crease that is seen",
-       Topic::visible_crease);
+  context.note(target.name + ": the surface folds at the regions' border by " +
+                   readable(error.crease, 2) + " degrees more than the source does, by " +
+                   readable(error.largest_crease, 2) + " where it is worst: a crease that is seen",
+               Topic::visible_crease);
 }
 
 }  // namespace mimetra

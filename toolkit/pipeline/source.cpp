@@ -60,15 +60,15 @@ bool predicts_better(const JointMotion& joint) {
 /// Finds what the stillest vertices tell, and the motion together with expressions where that is
 /// asked for or better.
 void find_stable_or_joint(Source& source, const MotionChoice& choice, bool is_joint,
-                          const SourceOptions& options, const AlignmentOptions& alignment) {
-  StableMotion stable = stable_motion(*source.sequence, alignment);
+                          const JointSearch& joint_search, const Context& context) {
+  StableMotion stable = stable_motion(*source.sequence, context);
   HeadMotionTaken& taken = source.head_motion;
   taken.stillest = stable.stillest / source.sequence->diameter();
   taken.disagreement = stable.disagreement;
   source.motion = std::move(stable.motion);
-  const bool is_open = !choice.is_asked && taken.is_uncertain() && options.joint;
+  const bool is_open = !choice.is_asked && taken.is_uncertain() && joint_search;
   if (!is_joint && !is_open) return;
-  JointMotion joint = options.joint(source);
+  JointMotion joint = joint_search(source, context.part(1, 1));
   taken.held_out = joint.held_out;
   if (!is_joint && !predicts_better(joint)) return;
   source.motion = std::move(joint.motion);
@@ -77,8 +77,8 @@ void find_stable_or_joint(Source& source, const MotionChoice& choice, bool is_jo
 }
 
 /// Sets the motion to take out; empty for none.
-void find_motion(Source& source, const MotionChoice& choice, const SourceOptions& options,
-                 AlignmentOptions alignment) {
+void find_motion(Source& source, const MotionChoice& choice, const JointSearch& joint,
+                 const Context& context) {
   if (const auto* given = std::get_if<std::vector<RigidTransform>>(&choice.motion)) {
     source.motion = *given;
     return;
@@ -87,23 +87,21 @@ void find_motion(Source& source, const MotionChoice& choice, const SourceOptions
   switch (asked) {
     case HeadMotion::stable:
     case HeadMotion::joint:
-      find_stable_or_joint(source, choice, asked == HeadMotion::joint, options, alignment);
+      find_stable_or_joint(source, choice, asked == HeadMotion::joint, joint, context);
       return;
     case HeadMotion::all:
-      alignment.vertices = AlignmentVertices::all;
-      source.motion = rigid_motion(*source.sequence, alignment);
+      source.motion = rigid_motion(*source.sequence, {.vertices = AlignmentVertices::all}, context);
       return;
     case HeadMotion::none:
       return;
   }
 }
 
-Shared with_asked_rest(Shared sequence, const SourceOptions& options) {
+Shared with_asked_rest(Shared sequence, const SourceOptions& options, const Context& context) {
   if (!options.rest) {
     if (!sequence->rest_is_known()) {
-      note(options.notes,
-           options.name + ": its neutral is not known, the first frame stands in for it",
-           Topic::unknown_neutral);
+      context.note(options.name + ": its neutral is not known, the first frame stands in for it",
+                   Topic::unknown_neutral);
     }
     return sequence;
   }
@@ -166,7 +164,7 @@ std::string comparison(const HeldOutErrors& errors) {
 
 /// Says where no vertex is still enough to tell the motion, and what was done then.
 void note_uncertainty(const MotionChoice& choice, const Source& source,
-                      const SourceOptions& options) {
+                      const SourceOptions& options, const Context& context) {
   const HeadMotionTaken& motion = source.head_motion;
   if (!motion.is_uncertain()) return;
   const bool is_joint = motion.how == choice_name(HeadMotion::joint);
@@ -178,89 +176,83 @@ void note_uncertainty(const MotionChoice& choice, const Source& source,
                      readable(*motion.disagreement, 3) + " degrees";
   if (is_joint) text += ", so it is found together with the target's expressions";
   if (motion.held_out) text += "; " + comparison(*motion.held_out);
-  note(options.notes, text, is_joint ? Topic::joint_motion : Topic::uncertain_motion);
+  context.note(text, is_joint ? Topic::joint_motion : Topic::uncertain_motion);
 }
 
 /// Says where frames are another size or elsewhere than the rest pose, by a motion of the whole
 /// head that was not taken out; whether they are.
 bool note_whole_motion(const MotionChoice& choice, const Source& source,
-                       const SourceOptions& options) {
-  const WholeMotion whole =
-      whole_motion(*source.sequence, {.threads = options.threads, .ranks = options.ranks});
+                       const SourceOptions& options, const Context& context) {
+  const WholeMotion whole = whole_motion(*source.sequence, context);
   const std::string reason = ", as " + std::string(choice.reason);
   if (whole.is_scaled()) {
-    note(options.notes,
-         options.name + ": frames are " + readable(whole.scale, 3) +
-             " times as large as the rest pose, which is " +
-             in_percent(1 - whole.left_by_similarity) +
-             " of how they differ from it and counts as deformation; bring both into one unit "
-             "(`mimetra convert --scale X`)");
+    context.note(options.name + ": frames are " + readable(whole.scale, 3) +
+                 " times as large as the rest pose, which is " +
+                 in_percent(1 - whole.left_by_similarity) +
+                 " of how they differ from it and counts as deformation; bring both into one unit "
+                 "(`mimetra convert --scale X`)");
     return true;
   }
   if (whole.angle < kTurning && !whole.moves()) return false;
-  note(options.notes,
-       options.name + ": the head turns by up to " + readable(whole.angle, 3) +
-           " degrees and moves by up to " + readable(whole.shift, 3) + " against the rest pose, " +
-           in_percent(1 - whole.left_by_motion) + " of all motion, which counts as deformation" +
-           reason,
-       Topic::turning_head);
+  context.note(options.name + ": the head turns by up to " + readable(whole.angle, 3) +
+                   " degrees and moves by up to " + readable(whole.shift, 3) +
+                   " against the rest pose, " + in_percent(1 - whole.left_by_motion) +
+                   " of all motion, which counts as deformation" + reason,
+               Topic::turning_head);
   return true;
 }
 
 /// Says where frames still move as a whole without the motion that was given; whether they do.
-bool note_given_motion(const Source& source, const SourceOptions& options) {
-  const WholeMotion whole = whole_motion(*without_motion(source.sequence, source.motion),
-                                         {.threads = options.threads, .ranks = options.ranks});
+bool note_given_motion(const Source& source, const SourceOptions& options, const Context& context) {
+  const WholeMotion whole = whole_motion(*without_motion(source.sequence, source.motion), context);
   if (!whole.moves()) return false;
-  note(options.notes,
-       options.name + ": without the motion that is given the head turns by up to " +
-           readable(whole.angle, 3) + " degrees and moves by up to " + readable(whole.shift, 3) +
-           " against the rest pose, " + in_percent(1 - whole.left_by_motion) +
-           " of all motion, which counts as deformation; was it taken out already, or is it that "
-           "of other frames?");
+  context.note(
+      options.name + ": without the motion that is given the head turns by up to " +
+      readable(whole.angle, 3) + " degrees and moves by up to " + readable(whole.shift, 3) +
+      " against the rest pose, " + in_percent(1 - whole.left_by_motion) +
+      " of all motion, which counts as deformation; was it taken out already, or is it that "
+      "of other frames?");
   return true;
 }
 
 /// Says what nobody asked for: that motion was taken out, or that the head moves and it was not;
 /// whether frames are elsewhere than the rest pose.
-bool note_motion(const MotionChoice& choice, const Source& source, const SourceOptions& options) {
+bool note_motion(const MotionChoice& choice, const Source& source, const SourceOptions& options,
+                 const Context& context) {
   if (std::holds_alternative<std::vector<RigidTransform>>(choice.motion)) {
-    return note_given_motion(source, options);
+    return note_given_motion(source, options, context);
   }
   if (choice.is_asked || options.model_driven) return false;
-  if (!takes_out(choice.motion)) return note_whole_motion(choice, source, options);
+  if (!takes_out(choice.motion)) return note_whole_motion(choice, source, options, context);
   const HeadMotionTaken& motion = source.head_motion;
   if (motion.angle == 0 && motion.shift == 0) return false;
-  note(options.notes, options.name + ": a head motion of up to " + readable(motion.angle, 3) +
-                          " degrees and " + readable(motion.shift, 3) + " is taken out, as " +
-                          std::string(motion.why));
+  context.note(options.name + ": a head motion of up to " + readable(motion.angle, 3) +
+               " degrees and " + readable(motion.shift, 3) + " is taken out, as " +
+               std::string(motion.why));
   return false;
 }
 
 /// Says where a neutral is likely not this face's: all that two faces differ by would be taken for
 /// its deformation.
-void note_other_face(const Source& source, const SourceOptions& options) {
-  const RestBeyondFrames rest =
-      rest_beyond_frames(source.sequence, {.threads = options.threads, .ranks = options.ranks});
+void note_other_face(const Source& source, const SourceOptions& options, const Context& context) {
+  const RestBeyondFrames rest = rest_beyond_frames(source.sequence, context);
   if (rest.is_of_other_face()) {
-    note(options.notes, options.name + ": " + described(rest), Topic::other_rest);
+    context.note(options.name + ": " + described(rest), Topic::other_rest);
   }
 }
 
 /// Says which frames can be no poses of the mesh: they take regions over, and targets follow them.
-void note_odd_frames(const FrameSource& sequence, const SourceOptions& options) {
-  const std::vector<FrameShape> shapes =
-      frame_shapes(sequence, {.threads = options.threads, .ranks = options.ranks});
+void note_odd_frames(const FrameSource& sequence, const SourceOptions& options,
+                     const Context& context) {
+  const std::vector<FrameShape> shapes = frame_shapes(sequence, context);
   for (const std::string& text : described(odd_frames(sequence, shapes), shapes)) {
-    note(options.notes,
-         options.name + ": " + text + "; leave such frames out (option 'frames') or mend them");
+    context.note(options.name + ": " + text +
+                 "; leave such frames out (option 'frames') or mend them");
   }
 }
 
-Shared kept(Shared sequence, const SourceOptions& options) {
-  return stored(std::move(sequence), {.threads = options.threads,
-                                      .progress = part_of(options.progress, 0, kStoringShare),
-                                      .ranks = options.ranks});
+Shared kept(Shared sequence, const Context& context) {
+  return stored(std::move(sequence), context.part(0, kStoringShare));
 }
 
 /// True for a shape that was given, and for the sequence's own where none was asked for.
@@ -284,42 +276,42 @@ Positions asked_rest(const FrameSource& sequence, const SourceOptions& options) 
   return is_first ? Positions(FrameBlock(sequence, 0, 1).frame(0)) : sequence.rest();
 }
 
-Source prepare_source(Shared sequence, const SourceOptions& options) {
+Source prepare_source(Shared sequence, const SourceOptions& options, const JointSearch& joint,
+                      const Context& context) {
   // Whether the head moves is judged by what is known of the sequence itself.
   const MotionChoice choice = motion_of(*sequence, options);
   const auto* asked = std::get_if<HeadMotion>(&choice.motion);
-  if (asked && *asked == HeadMotion::joint && !options.joint) {
+  if (asked && *asked == HeadMotion::joint && !joint) {
     throw OptionError(Topic::no_joint_motion,
                       options.name + ": no target has expressions to find its head motion with");
   }
   Source source;
-  source.given = kept(std::move(sequence), options);
-  source.sequence = with_asked_rest(source.given, options);
+  source.given = kept(std::move(sequence), context);
+  source.sequence = with_asked_rest(source.given, options, context);
   check_size_of_rest(*source.sequence, options.name);
   source.rest_is_given = options.rest.has_value();
   source.neutral_is_known = knows_neutral(*source.given, options);
   source.head_motion = {name_of(choice.motion), choice.reason};
-  find_motion(source, choice, options,
-              {.threads = options.threads,
-               .progress = part_of(options.progress, kStoringShare, 1),
-               .ranks = options.ranks});
+  find_motion(source, choice, joint, context.part(kStoringShare, 1));
   measure_motion(source);
-  if (!options.model_driven) note_odd_frames(*source.sequence, options);
-  const bool is_elsewhere = note_motion(choice, source, options);
-  note_uncertainty(choice, source, options);
+  const Context done = context.part(1, 1);
+  if (!options.model_driven) note_odd_frames(*source.sequence, options, done);
+  const bool is_elsewhere = note_motion(choice, source, options, done);
+  note_uncertainty(choice, source, options, done);
   if (takes_out(choice.motion)) {
     source.sequence = without_motion(source.sequence, source.motion);
   }
   if (source.neutral_is_known && !options.model_driven && !is_elsewhere) {
-    note_other_face(source, options);
+    note_other_face(source, options, done);
   }
   source.moving = moving_vertices(source.motion.empty() ? *source.sequence : *source.given);
   if (is_mean(options)) source.sequence = with_rest(source.sequence, mean_pose(*source.sequence));
   return source;
 }
 
-Source prepare_source(const MeshSequence& sequence, const SourceOptions& options) {
-  return prepare_source(std::make_shared<const MeshSequence>(sequence), options);
+Source prepare_source(const MeshSequence& sequence, const SourceOptions& options,
+                      const JointSearch& joint, const Context& context) {
+  return prepare_source(std::make_shared<const MeshSequence>(sequence), options, joint, context);
 }
 
 Shared with_head_motion(Shared result, std::vector<RigidTransform> motion) {

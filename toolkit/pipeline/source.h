@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "toolkit/mesh/alignment.h"
-#include "toolkit/pipeline/note.h"
+#include "toolkit/mesh/context.h"
 
 namespace mimetra {
 
@@ -68,9 +68,9 @@ struct JointMotion {
 
 struct Source;
 
-/// Finds it, from a source whose frames still have the motion that its `motion` says, as
-/// HeadMotion::stable found it.
-using JointSearch = std::function<JointMotion(const Source&)>;
+/// Finds the joint motion of a source whose frames still have their head motion. The source's
+/// `motion` is the one that HeadMotion::stable found.
+using JointSearch = std::function<JointMotion(const Source&, const Context&)>;
 
 struct SourceOptions {
   /// In notes and errors.
@@ -82,17 +82,8 @@ struct SourceOptions {
   /// none for one frame, and where the neutral is known, as the sequence's own or as `rest`, or a
   /// model drives the source; otherwise stable.
   std::optional<std::variant<HeadMotion, std::vector<RigidTransform>>> head_motion = {};
-  /// A model drives it: it has no head motion of its own.
+  /// A model drives the sequence, which then has no head motion of its own.
   bool model_driven = false;
-  /// For HeadMotion::joint, and where nobody asked for anything and no vertex is still enough:
-  /// the joint motion is then taken if it predicts vertices that were held out twice as well.
-  JointSearch joint = {};
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  /// Processes that frames are dealt out to, as in BlockOptions.
-  const Ranks* ranks = nullptr;
-  Progress progress = {};
-  Notes notes = {};
 
   static constexpr Option kRest{"rest", &SourceOptions::rest};
   static constexpr Option kHeadMotion{"head_motion", &SourceOptions::head_motion};
@@ -148,14 +139,20 @@ Positions asked_rest(const FrameSource& sequence, const SourceOptions& options);
 /// asked for (Topic::joint_motion), and a neutral that is likely another face's
 /// (Topic::other_rest).
 ///
+/// `joint` finds the motion for HeadMotion::joint. It is also used if the options name no head
+/// motion and no vertex is still enough: the joint motion is then taken if it predicts vertices
+/// that were held out twice as well as the stable one.
+///
 /// Throws OptionError (Topic::unknown_neutral) where the neutral is asked for and not known, and
-/// (Topic::no_joint_motion) where HeadMotion::joint is and options.joint is empty,
+/// (Topic::no_joint_motion) where HeadMotion::joint is and `joint` is empty,
 /// std::invalid_argument for a rest pose of another number of vertices, MismatchError where a given
 /// motion has another number of frames, what reading throws, OutputError where frames cannot be
 /// stored(), Cancelled.
 Source prepare_source(std::shared_ptr<const FrameSource> sequence,
-                      const SourceOptions& options = {});
-Source prepare_source(const MeshSequence& sequence, const SourceOptions& options = {});
+                      const SourceOptions& options = {}, const JointSearch& joint = {},
+                      const Context& context = {});
+Source prepare_source(const MeshSequence& sequence, const SourceOptions& options = {},
+                      const JointSearch& joint = {}, const Context& context = {});
 
 /// A result with the head motion (F) given back to its frames. Its neutral, which has none, is not
 /// its rest pose any more. Throws MismatchError.

@@ -24,7 +24,7 @@ std::vector<FollowingPart> described(const FollowingParts& following,
 }
 
 void TargetNotes::add(const std::string& text, Topic topic) const {
-  note(notes_, start_ + text, topic);
+  context_.note(start_ + text, topic);
 }
 
 void TargetNotes::add(const BlendshapeConditions& conditions) const {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "toolkit/mesh/context.h"
 #include "toolkit/model/blendshape_model.h"
-#include "toolkit/pipeline/note.h"
 #include "toolkit/transfer/blendshape_transfer.h"
 #include "toolkit/transfer/following_parts.h"
 
@@ -26,7 +26,8 @@ std::vector<FollowingPart> described(const FollowingParts& parts,
 /// What a solve notes of a target, under its name.
 class TargetNotes {
  public:
-  TargetNotes(const std::string& name, const Notes& notes) : start_(name + ": "), notes_(notes) {}
+  TargetNotes(const std::string& name, const Context& context)
+      : start_(name + ": "), context_(context) {}
 
   void add(const std::string& text, Topic topic = Topic::other) const;
   /// Expressions that are not or hardly seen.
@@ -45,7 +46,7 @@ class TargetNotes {
 
  private:
   std::string start_;
-  const Notes& notes_;
+  const Context& context_;
 };
 
 }  // namespace mimetra

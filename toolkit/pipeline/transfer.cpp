@@ -32,58 +32,30 @@ struct Choice {
   double seconds = 0;
 };
 
-Analysis analysis_for(const Source& source, const TransferOptions& options) {
-  AnalysisOptions of_analysis = options.analysis;
-  of_analysis.threads = options.threads;
-  of_analysis.ranks = options.ranks;
-  of_analysis.notes = options.notes;
-  of_analysis.progress = part_of(options.progress, kSourceShare, kRegionShare);
-  if (const auto* given = std::get_if<GivenComponents>(&options.given)) {
-    return analysis_of(*given, *source.sequence, source.moving, of_analysis);
-  }
-  return analyse(source, of_analysis);
-}
-
-Choice choose(const Source& source, const TransferOptions& options) {
+Choice choose(const Source& source, const TransferOptions& options, const Context& context) {
   if (options.full) return {};
-  RegionChoiceOptions of_regions = options.regions;
-  of_regions.notes = options.notes;
   const FrameSource& sequence = *source.sequence;
-  AnalysisOptions of_analysis = options.analysis;
-  of_analysis.threads = options.threads;
-  of_analysis.ranks = options.ranks;
-  of_analysis.notes = options.notes;
   if (const auto* given = std::get_if<GivenRegions>(&options.given)) {
     check_regions(*given, sequence);
-    return {given->regions, RegionCompleter(source, of_regions, of_analysis)};
+    return {given->regions, RegionCompleter(source, options.regions, options.analysis)};
   }
   if (options.regions.select == Selector::transfer) {
     Choice choice;
-    choice.selector.emplace(source, of_regions, of_analysis);
+    choice.selector.emplace(source, options.regions, options.analysis);
     return choice;
   }
   const Stopwatch stopwatch;
-  Analysis analysis = analysis_for(source, options);
-  Regions regions = choose_regions(analysis, of_regions);
-  RegionCompleter completion(analysis, of_regions);
+  const auto* given = std::get_if<GivenComponents>(&options.given);
+  Analysis analysis = given
+                          ? analysis_of(*given, sequence, source.moving, options.analysis, context)
+                          : analyse(source, options.analysis, context);
+  Regions regions = choose_regions(analysis, options.regions, context.part(1, 1));
+  RegionCompleter completion(analysis, options.regions);
   return {std::move(regions),
           std::move(completion),
           {},
           std::move(analysis.components),
           stopwatch.seconds()};
-}
-
-Source source_of(const FrameSource& sequence, const std::vector<Target>& targets,
-                 const TransferOptions& options, const SolveOptions& of_solving) {
-  // Nothing that is returned keeps it.
-  std::shared_ptr<const FrameSource> given(std::shared_ptr<const FrameSource>(), &sequence);
-  SourceOptions of_source = options.source;
-  of_source.threads = options.threads;
-  of_source.ranks = options.ranks;
-  of_source.notes = options.notes;
-  of_source.progress = part_of(options.progress, 0, kSourceShare);
-  of_source.joint = joint_search(targets, of_solving);
-  return prepare_source(std::move(given), of_source);
 }
 
 /// Whether a frame differs from the rest pose. Reads until it finds one.
@@ -98,7 +70,7 @@ bool moves(const FrameSource& sequence) {
 
 /// Where all frames are the rest pose the result would be perfect, and the target's neutral: says
 /// so, and of a single frame throws MismatchError.
-void expect_motion(const FrameSource& sequence, const std::string& name, const Notes& notes) {
+void expect_motion(const FrameSource& sequence, const std::string& name, const Context& context) {
   if (moves(sequence)) return;
   const bool single = sequence.frames() == 1;
   const std::string text =
@@ -108,33 +80,32 @@ void expect_motion(const FrameSource& sequence, const std::string& name, const N
       "; give what drives it (option 'weights') where it is a model, or its undeformed shape "
       "(option 'source-rest')";
   if (single) throw MismatchError(text);
-  note(notes, text);
+  context.note(text);
 }
 
 std::vector<MatchedTarget> matched_targets(const FrameSource& sequence,
                                            const std::vector<Target>& given,
-                                           const TransferOptions& options) {
+                                           const SourceOptions& options, const Context& context) {
   std::vector<MatchedTarget> matched;
   for (const Target& target : given) {
-    MatchOptions of_match{.threads = options.threads, .notes = options.notes};
-    if (is_to_be_paired(sequence, target))
-      of_match.source_rest = asked_rest(sequence, options.source);
-    matched.emplace_back(sequence, target, of_match);
+    std::optional<Positions> rest;
+    if (is_to_be_paired(sequence, target)) rest = asked_rest(sequence, options);
+    matched.emplace_back(sequence, target, rest, context);
   }
   return matched;
 }
 
 /// The regions that a target is solved by; none for all triangles.
 std::optional<Regions> regions_for(const Target& target, const Source& placed, Choice& choice,
-                                   const SolveOptions& of_solving) {
+                                   const SolveOptions& of_solving, const Context& context) {
   if (choice.selector) {
     const Stopwatch stopwatch;
-    Regions regions = (*choice.selector)(placed, target, of_solving);
+    Regions regions = (*choice.selector)(placed, target, of_solving, context);
     choice.seconds += stopwatch.seconds();
     return regions;
   }
   if (!choice.regions) return {};
-  return (*choice.completion)(*choice.regions, target, of_solving);
+  return (*choice.completion)(*choice.regions, target, of_solving, context);
 }
 
 /// The discs of `completed` that `regions` lack.
@@ -167,36 +138,32 @@ struct TargetSolve {
   const Selection& selection;
   const SolveOptions& options;
 
-  TransferError error(const Solution& solution, const Progress& progress) const {
-    SolveOptions of_error = options;
-    of_error.progress = progress;
-    return error_of(solution, placed.source, target, selection, of_error);
+  TransferError error(const Solution& solution, const Context& context) const {
+    return error_of(solution, placed.source, target, selection, options, context);
   }
 
   /// Without what holds the target off the source; says nothing.
-  TransferError error_without_holds(const Progress& progress) const {
-    SolveOptions free = without_holds(options);
-    free.notes = {};
-    free.progress = progress;
+  TransferError error_without_holds(const Context& context) const {
     const Target unruled = without_holds(target);
-    return error(solve(placed.source, unruled, selection, free), progress);
+    const Context quiet = context.quiet();
+    return error(solve(placed.source, unruled, selection, without_holds(options), quiet), quiet);
   }
 };
 
 /// Says where a result is not usable, by its error before head motion is given back, and what may
 /// have made it so. Weights are found once more without the options that hold them.
 void note_usability(const TargetSolve& solved, const TransferError& error,
-                    const TransferOptions& options, const Progress& progress) {
+                    const TransferOptions& options, const Context& context) {
   const Target& target = solved.target;
   const std::string wrong = unusable_by(error);
   if (wrong.empty()) return;
   std::string text = target.name + ": the result may not be usable: " + wrong;
   const FrameSource& source = *solved.placed.source.sequence;
-  const OddFrames odd = odd_frames(source, frame_shapes(source, {.threads = options.threads}));
+  const OddFrames odd = odd_frames(source, frame_shapes(source, context.without_ranks()));
   if (odd.any()) {
-    note(options.notes, text +
-                            "; look at the source's frames, of which some can be no poses of its "
-                            "mesh: `mimetra check` names them");
+    context.note(text +
+                 "; look at the source's frames, of which some can be no poses of its "
+                 "mesh: `mimetra check` names them");
     return;
   }
   const std::vector<std::string> holds = holding_options(target, solved.options);
@@ -205,25 +172,25 @@ void note_usability(const TargetSolve& solved, const TransferError& error,
     if (solves_for_vertices(target.model, solved.options.space)) {
       text += "; " + names + " is on, which damps motion";
     } else {
-      const TransferError free = solved.error_without_holds(progress);
+      const TransferError free = solved.error_without_holds(context);
       if (unusable_by(free).empty()) {
-        note(options.notes, text + "; without " + names + ' ' + percent(missed_share(free)) +
-                                " of the deformation is missing, and the result is usable");
+        context.note(text + "; without " + names + ' ' + percent(missed_share(free)) +
+                     " of the deformation is missing, and the result is usable");
         return;
       }
       text += "; without " + names + " still " + unusable_by(free);
     }
   }
   if (!options.full) {
-    note(options.notes, text, Topic::poor_condition);
+    context.note(text, Topic::poor_condition);
   } else if (target.pairing) {
-    note(options.notes, text +
-                            "; source and target are paired: look at the result, and add markers "
-                            "where it is wrong");
+    context.note(text +
+                 "; source and target are paired: look at the result, and add markers "
+                 "where it is wrong");
   } else {
-    note(options.notes, text +
-                            "; look whether source and target have the same vertices in the same "
-                            "order, and whether both rest poses are neutral");
+    context.note(text +
+                 "; look whether source and target have the same vertices in the same "
+                 "order, and whether both rest poses are neutral");
   }
 }
 
@@ -234,86 +201,97 @@ constexpr double kNoMotion = 1e-9;
 /// regions' border lets not move at all.
 std::vector<ComparedOpening> openings_on(const MatchedTarget& target, const FrameSource& source,
                                          const Solution& solution, const Selection& selection,
-                                         const TransferOptions& options) {
+                                         const Context& context) {
   if (!target.report() || !target.report()->found) return {};
   std::vector<ComparedOpening> openings = compared_openings(
-      source, *solution.sequence, *target.report()->found, {.threads = options.threads});
+      source, *solution.sequence, *target.report()->found, context.without_ranks());
   for (const ComparedOpening& opening : openings) {
     const bool is_held = std::ranges::count(selection.inside, false) > 0 &&
                          opening.target_most - opening.target_least < kNoMotion;
     if (is_held || !opening.stays_open()) continue;
-    note(options.notes, (*target).name + ": the " + std::string(opening.name) +
-                            " closes on the source, here " + percent(opening.target_least) +
-                            " of its width stay open; look at it, and add markers around it");
+    context.note((*target).name + ": the " + std::string(opening.name) +
+                 " closes on the source, here " + percent(opening.target_least) +
+                 " of its width stay open; look at it, and add markers around it");
   }
   return openings;
 }
 
 void check_full(const TransferOptions& options) {
-  if (options.full && options.solving.per_region) {
+  if (options.full && options.solve.per_region) {
     throw std::invalid_argument("per_region: a full transfer has no regions");
   }
-  if (options.full && options.solving.falloff) {
+  if (options.full && options.solve.falloff) {
     throw std::invalid_argument("falloff: a full transfer has no regions");
   }
+}
+
+/// With what a solve takes from the analysis unless it is given.
+SolveOptions solve_options(const TransferOptions& options) {
+  SolveOptions of_solving = options.solve;
+  if (!of_solving.edges) of_solving.edges = edge_sum(options.analysis.compatibility);
+  if (!of_solving.distances) of_solving.distances = options.analysis.distances;
+  return of_solving;
 }
 
 }  // namespace
 
 TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& given,
-                        const TransferOptions& options) {
+                        const TransferOptions& options, const Context& context) {
   check_options(options);
+  check_options(options.analysis);
+  check_options(options.regions);
+  check_options(options.solve);
   check_full(options);
-  const std::vector<MatchedTarget> matched = matched_targets(sequence, given, options);
+  const std::vector<MatchedTarget> matched =
+      matched_targets(sequence, given, options.source, context.part(0, 0));
+  const SolveOptions of_solving = solve_options(options);
   std::vector<Target> targets;
   for (const MatchedTarget& target : matched) {
-    if (!options.full) check_selection(*target, options.regions, options.solving.space);
+    if (!options.full) check_selection(*target, options.regions, options.solve.space);
     targets.push_back(*target);
   }
-  SolveOptions of_solving = options.solving;
-  of_solving.threads = options.threads;
-  of_solving.ranks = options.ranks;
-  of_solving.notes = options.notes;
-  of_solving.edges = edge_sum(options.analysis.compatibility);
   for (const Target& target : targets) {
     check_rules(target, of_solving);
     check_border(std::get_if<GivenRegions>(&options.given), target, of_solving);
   }
-  of_solving.distances = options.analysis.distances;
-  const Source source = source_of(sequence, targets, options, of_solving);
-  expect_motion(*source.sequence, options.source.name, options.notes);
-  Choice choice = choose(source, options);
+  // Nothing that is returned keeps it.
+  const std::shared_ptr<const FrameSource> unowned(std::shared_ptr<const FrameSource>(), &sequence);
+  const Source source = prepare_source(unowned, options.source, joint_search(targets, of_solving),
+                                       context.part(0, kSourceShare));
+  expect_motion(*source.sequence, options.source.name, context);
+  Choice choice = choose(source, options, context.part(kSourceShare, kRegionShare));
   const bool give_back = !source.motion.empty() && options.head_motion == RemovedMotion::keep;
 
   TransferResult result;
   const double first = choice.regions ? kRegionShare : kSourceShare;
-  const double solved = choice.selector ? kRegionShare : 0;
+  const double chosen = choice.selector ? kRegionShare * kSolveShare : 0;
   const auto count = static_cast<double>(targets.size());
   for (std::size_t t = 0; t < targets.size(); ++t) {
-    const Progress progress =
-        part_of(options.progress, first + (1 - first) * static_cast<double>(t) / count,
-                first + (1 - first) * static_cast<double>(t + 1) / count);
-    const Progress until_error = part_of(progress, 0, kSolveShare);
-    of_solving.progress = part_of(until_error, 0, solved);
+    const Context of_this = context.part(first + (1 - first) * static_cast<double>(t) / count,
+                                         first + (1 - first) * static_cast<double>(t + 1) / count);
+    const Context done = of_this.part(1, 1);
     const Target& target = targets[t];
-    const PlacedSource placed = placed_at(target, source, of_solving);
-    std::optional<Regions> regions = regions_for(target, placed.source, choice, of_solving);
-    of_solving.progress = part_of(until_error, solved, 1);
+    const PlacedSource placed = placed_at(target, source, of_solving.axes, of_this);
+    std::optional<Regions> regions =
+        regions_for(target, placed.source, choice, of_solving, of_this.part(0, chosen));
     const Selection selection =
-        regions ? bordered_selection(*regions, target, of_solving, source.moving) : whole(target);
+        regions ? bordered_selection(*regions, target, of_solving, source.moving,
+                                     of_this.part(chosen, chosen))
+                : whole(target);
     if (regions) regions = with_border(std::move(*regions), selection, target);
-    Solution solution = solve(placed.source, target, selection, of_solving);
+    Solution solution =
+        solve(placed.source, target, selection, of_solving, of_this.part(chosen, kSolveShare));
     const Stopwatch of_error;
     const TargetSolve of_target{placed, target, selection, of_solving};
-    TransferError error = of_target.error(solution, part_of(progress, kSolveShare, 1));
+    TransferError error = of_target.error(solution, of_this.part(kSolveShare, 1));
     const double error_seconds = of_error.seconds();
-    note_usability(of_target, error, options, part_of(progress, 1, 1));
+    note_usability(of_target, error, options, done);
     // Expressions that do not fade move the whole face: where regions end nothing does.
     if (solution.weights().size() == 0 || selection.weights.size() > 0) {
-      note_crease(error, target, options.notes);
+      note_crease(error, target, context);
     }
     std::vector<ComparedOpening> openings =
-        openings_on(matched[t], *placed.source.sequence, solution, selection, options);
+        openings_on(matched[t], *placed.source.sequence, solution, selection, done);
     if (give_back) solution.sequence = with_head_motion(solution.sequence, placed.source.motion);
     result.targets.push_back({std::move(solution), std::move(regions), placed.similarity,
                               std::move(error), target.pairing, matched[t].report(), error_seconds,

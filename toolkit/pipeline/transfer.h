@@ -35,17 +35,11 @@ struct TransferOptions {
   /// decomposed. Regions with a soft border of their own are taken as they are: no discs complete
   /// them.
   std::variant<std::monostate, GivenRegions, GivenComponents> given = {};
-  /// Of the parts; their threads, ranks, progress and notes are those of the transfer.
+  /// The steps.
   SourceOptions source = {};
   AnalysisOptions analysis = {};
   RegionChoiceOptions regions = {};
-  SolveOptions solving = {};
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  /// Processes that work together: all make the same call, and get the same.
-  const Ranks* ranks = nullptr;
-  Progress progress = {};
-  Notes notes = {};
+  SolveOptions solve = {};
 
   static constexpr Option kFull{"full", &TransferOptions::full};
   static constexpr Option kHeadMotion{"head_motion", &TransferOptions::head_motion};
@@ -101,6 +95,6 @@ struct TransferResult {
 /// check_border(), choose_regions(), RegionSelector, bordered_selection() and solve() throw;
 /// Cancelled. A target that does not fit is refused before anything is computed.
 TransferResult transfer(const FrameSource& source, const std::vector<Target>& targets,
-                        const TransferOptions& options = {});
+                        const TransferOptions& options = {}, const Context& context = {});
 
 }  // namespace mimetra

@@ -24,11 +24,10 @@ std::vector<std::string> holding_options(const Target& target, const SolveOption
   };
   add(options.smoothness > 0, "smoothness");
   if (solves_for_vertices(target.model, options.space)) return names;
-  const BlendshapeTransferOptions& of_weights = options.blendshape;
-  add(of_weights.ridge > 0, "ridge");
-  add(of_weights.sparsity > 0, "l1");
-  add(of_weights.symmetry > 0, "symmetry");
-  add(of_weights.exclusive != Exclusive::none, "exclusive");
+  add(options.ridge > 0, "ridge");
+  add(options.sparsity > 0, "l1");
+  add(options.symmetry > 0, "symmetry");
+  add(options.exclusive != Exclusive::none, "exclusive");
   add(!target.rules.empty(), "rules");
   return names;
 }
@@ -39,9 +38,8 @@ Target without_holds(Target target) {
 }
 
 SolveOptions without_holds(SolveOptions options) {
-  options.smoothness = options.blendshape.ridge = options.blendshape.sparsity = 0;
-  options.blendshape.symmetry = 0;
-  options.blendshape.exclusive = Exclusive::none;
+  options.smoothness = options.ridge = options.sparsity = options.symmetry = 0;
+  options.exclusive = Exclusive::none;
   return options;
 }
 

@@ -285,7 +285,8 @@ Eigen::VectorXd motion_energy(const Components& components) {
       components.displacements.rowwise().squaredNorm());
 }
 
-Regions find_regions(const Components& components, const RegionOptions& options) {
+Regions find_regions(const Components& components, const RegionOptions& options,
+                     const Context& context) {
   require_valid(options);
   require_size("inside", options.inside, components.vertices());
   require_size("no_centers", options.no_centers, components.vertices());
@@ -293,7 +294,7 @@ Regions find_regions(const Components& components, const RegionOptions& options)
       options.distances
           ? options.distances
           : SurfaceDistances(components.rest, components.triangles, Weld::exact(components.rest),
-                             GeodesicMethod::heat, options.threads);
+                             GeodesicMethod::heat, context);
   std::vector<Site> sites = sites_of(components, distances);
   if (!options.no_centers.empty()) {
     std::erase_if(sites, [&](const Site& site) { return options.no_centers[site.center]; });

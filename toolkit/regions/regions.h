@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/fields.h"
 #include "toolkit/mesh/option.h"
 #include "toolkit/splocs/decomposition.h"
@@ -43,8 +44,6 @@ struct RegionOptions {
   std::vector<bool> no_centers = {};
   /// Distances along the rest pose; by default SurfaceDistances of its exactly welded vertices.
   DistanceFunction distances = {};
-  /// For those default distances; 0 for all there are. The result does not depend on it.
-  int threads = 0;
 
   static constexpr Option kShape{"shape", &RegionOptions::shape};
   static constexpr Option kCoverage{
@@ -102,7 +101,8 @@ Eigen::VectorXd motion_energy(const Components& components);
 /// energy; components with the same centre (also across a welded seam) are merged. A vertex that no
 /// way along the surface reaches is in no region. Throws std::invalid_argument for options out of
 /// range, and for numbers of vertices `inside` or `no_centers` that are not the mesh's.
-Regions find_regions(const Components& components, const RegionOptions& options = {});
+Regions find_regions(const Components& components, const RegionOptions& options = {},
+                     const Context& = {});
 
 /// The first `count` regions only (all, where there are fewer). Throws std::invalid_argument where
 /// count < 1.

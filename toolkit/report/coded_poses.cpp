@@ -108,19 +108,19 @@ QuantizedPoses quantized(const MeshSequence& sequence, const std::vector<int>& f
 }
 
 std::optional<MixedPoses> mixed(const MeshSequence& sequence, const std::vector<int>& frames,
-                                Eigen::Index most, int threads) {
+                                Eigen::Index most, const Context& context) {
   fix_product_blocking();
   constexpr double kOffByBasis = 1. / 4, kOffByRounding = 1. / 8;  // root mean squares, in steps
   const Grid grid = grid_of(sequence, frames);
-  const Reduction reduction(sequence.vertices(), threads);
-  const Displacements X(sequence, frames, grid.step, reduction.part());
+  const Displacements X(sequence, frames, grid.step, VertexPart(sequence.vertices()));
   const double norm2 = X.squared_norm();
   const double numbers = static_cast<double>(frames.size()) * 3 * sequence.vertices();
   const double tolerance = norm2 > 0 ? kOffByBasis * std::sqrt(numbers / norm2) : 1;
   if (tolerance < kLeastBasisTolerance) return std::nullopt;
   // A sketch that finds few poses has more of them.
   const Eigen::Index sketched = std::max<Eigen::Index>(64, 2 * most);
-  const auto found = time_basis(X, norm2, std::min(1.0, tolerance), reduction, sketched);
+  const auto found =
+      time_basis(X, norm2, std::min(1.0, tolerance), sketched, context.without_ranks());
   if (!found || found->B.rows() > most) return std::nullopt;
 
   // The largest weight of each pose becomes 1.

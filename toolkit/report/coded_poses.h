@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/mesh_sequence.h"
 
 namespace mimetra {
@@ -44,9 +45,10 @@ struct MixedPoses {
   std::vector<Correction> corrections;  ///< by frame, then by coordinate
 };
 
-/// Nothing where half as many poses as there are frames, or `most` of them, do not give the frames
-/// to a fourth of a step (root mean square). What is given does not depend on `threads`.
+/// Finds a few poses that mix to the frames. Returns nothing if an error of at most a
+/// fourth of a step (root mean square) takes more than `most` poses, or more than half as many as
+/// there are frames. Throws Cancelled.
 std::optional<MixedPoses> mixed(const MeshSequence& sequence, const std::vector<int>& frames,
-                                Eigen::Index most, int threads);
+                                Eigen::Index most, const Context& context = {});
 
 }  // namespace mimetra

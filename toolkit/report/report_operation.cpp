@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/evaluation_table.h"
 #include "toolkit/operations/formats.h"
@@ -91,12 +90,12 @@ void draw_wanted(Outcome& outcome, const Invocation& invocation, const ReportStu
 
 Outcome run_report(const Invocation& invocation) {
   check_pictures(invocation);
-  ReportCall call = report_parameters().read(invocation.parameters);
-  call.view.threads = invocation.threads;
-  const ReportStudy found = study(invocation.input("run"), call.counts,
-                                  part_of(invocation.progress, 0, 0.6), invocation.log);
+  const ReportCall call = report_parameters().read(invocation.parameters);
+  const ReportStudy found =
+      study(invocation.input("run"), call.counts, invocation.log, invocation.context.part(0, 0.6));
   const std::string_view viewer = viewer_script();
-  ReportPage page = report_page(found, call.view, viewer, part_of(invocation.progress, 0.6, 1));
+  ReportPage page =
+      report_page(found, call.view, viewer, kLargestReport, invocation.context.part(0.6, 1));
   if (page.viewer_frames == 0) {
     invocation.warn(viewer.empty()
                         ? "the report has no 3D viewer: this mimetra was built without npm"
@@ -134,13 +133,15 @@ double memory(const Invocation& invocation) {
   const ReportCall report = report_parameters().read(invocation.parameters);
   int most = main_count(call.parameters);
   for (const int count : report.counts) most = std::max(most, count);
+  AnalysisOptions of_most = analysis_parameters().read(call.parameters);
+  of_most.count = most;
   const double analysis =
-      drawing_bytes(sequence.vertices(), most) + analysis_plan(call, sequence, most).bytes;
+      drawing_bytes(sequence.vertices(), most) + analysis_plan(call, sequence, of_most).bytes;
   if (!call.inputs.contains("target")) return analysis;
-  SolveOptions options = solving_parameters().read(call.parameters);
-  options.threads = call.threads;
+  const SolveOptions options = solving_parameters().read(call.parameters);
   return analysis + 3 * frame_bytes(sequence) +
-         3 * solution_bytes(sequence, call.get<ModelData>("target").model.average(), options);
+         3 * solution_bytes(sequence, call.get<ModelData>("target").model.average(), options,
+                            call.context);
 }
 
 Operation report_operation() {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <future>
 
-#include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/xml_text.h"
 #include "toolkit/report/base64.h"
@@ -30,9 +29,9 @@ struct PicturePair {
 };
 
 /// Compressed beside what is drawn next, unless there is one thread only.
-std::future<PagePicture> page_picture(Image image, int threads) {
-  return std::async(threads == 1 ? std::launch::deferred : std::launch::async, [image = std::move(
-                                                                                    image)] {
+std::future<PagePicture> page_picture(Image image, const Context& context) {
+  const auto launch = context.threads() == 1 ? std::launch::deferred : std::launch::async;
+  return std::async(launch, [image = std::move(image)] {
     return PagePicture{"data:image/png;base64," + base64(png_of(image)), image.width, image.height};
   });
 }
@@ -240,16 +239,15 @@ ViewerScene scene_of(const ReportStudy& study, const ReportView& view) {
         {"target", transfer.target, transfer.by_regions, transfer.regions_of_vertices});
   }
   scene.viewpoint = view.viewpoint;
-  scene.threads = view.threads;
   return scene;
 }
 
-std::string charts(const std::vector<Chart>& list, int threads) {
+std::string charts(const std::vector<Chart>& list, const Context& context) {
   // Large letters: on a phone the picture is drawn at less than half its size.
   constexpr ChartSize kSize{900, 700, 26};
   std::vector<std::future<PagePicture>> pictures;
   for (const Chart& chart : list) {
-    pictures.push_back(page_picture(draw(std::vector<Chart>{chart}, kSize), threads));
+    pictures.push_back(page_picture(draw(std::vector<Chart>{chart}, kSize), context));
   }
   std::string figures;
   for (std::size_t i = 0; i < list.size(); ++i) figures += figure(pictures[i].get(), list[i].title);
@@ -276,17 +274,17 @@ struct SheetSize {
 /// Smaller where the pictures of a mesh with much detail would take more than `bytes`.
 template <typename SheetOf>
 PicturePair drawn(const SheetOf& sheet_of, SheetSize wide, SheetSize narrow, std::size_t bytes,
-                  int threads, const Progress& progress) {
-  const auto draw_one = [&](const SheetSize& size, const Progress& part) {
+                  const Context& context) {
+  const auto draw_one = [&](const SheetSize& size, const Context& part) {
     Sheet sheet = sheet_of(size.columns);
     sheet.tile_height = size.tile_height;
     sheet.letters = size.letters;
-    return page_picture(draw(sheet, {.progress = part}), threads);
+    return page_picture(draw(sheet, part), context);
   };
   for (double from = 0;; from += (1 - from) / 2) {
-    const Progress part = part_of(progress, from, from + (1 - from) / 2);
-    std::future<PagePicture> wide_picture = draw_one(wide, part_of(part, 0, 0.6));
-    std::future<PagePicture> narrow_picture = draw_one(narrow, part_of(part, 0.6, 1));
+    const Context part = context.part(from, from + (1 - from) / 2);
+    std::future<PagePicture> wide_picture = draw_one(wide, part.part(0, 0.6));
+    std::future<PagePicture> narrow_picture = draw_one(narrow, part.part(0.6, 1));
     PicturePair pair{wide_picture.get(), narrow_picture.get()};
     const double share = static_cast<double>(bytes) /
                          static_cast<double>(pair.wide.address.size() + pair.narrow.address.size());
@@ -297,49 +295,49 @@ PicturePair drawn(const SheetOf& sheet_of, SheetSize wide, SheetSize narrow, std
 }
 
 std::string strip_section(const ReportStudy& study, const ReportView& view, std::size_t bytes,
-                          const Progress& progress) {
+                          const Context& context) {
   const auto sheet = [&](int columns) { return report_strip(study, view, columns); };
   return section("Over time", "Frames at even distances, all at one scale.",
-                 figure(drawn(sheet, {7, 230, 15}, {3, 220, 20}, bytes, view.threads, progress),
+                 figure(drawn(sheet, {7, 230, 15}, {3, 220, 20}, bytes, context),
                         "Film strip of the source, its regions and what became of it"));
 }
 
 std::string gallery_section(const Components& components, const ReportView& view, std::size_t bytes,
-                            const Progress& progress) {
+                            const Context& context) {
   const std::vector<int> shown = strongest_components(components, kMostInGallery);
   const auto sheet = [&](int columns) {
     return component_gallery(components, shown, view, columns);
   };
   const bool has_all = static_cast<int>(shown.size()) == components.count();
-  return section("Components",
-                 (has_all ? "Each component"
-                          : "The " + std::to_string(shown.size()) + " strongest of " +
-                                std::to_string(components.count()) + " components") +
-                     " at weight 1, the strongest first: its number, and its largest displacement, "
-                     "where it is darkest.",
-                 figure(drawn(sheet, {8, 210, 16}, {3, 220, 19}, bytes, view.threads, progress),
-                        "Gallery of components"));
+  return section(
+      "Components",
+      (has_all ? "Each component"
+               : "The " + std::to_string(shown.size()) + " strongest of " +
+                     std::to_string(components.count()) + " components") +
+          " at weight 1, the strongest first: its number, and its largest displacement, "
+          "where it is darkest.",
+      figure(drawn(sheet, {8, 210, 16}, {3, 220, 19}, bytes, context), "Gallery of components"));
 }
 
 /// What follows the player; strip and gallery leave something of `largest` bytes for it.
 std::string sections_below(const PageText& page, const ReportStudy& study, const ReportView& view,
-                           std::size_t largest, const Progress& progress) {
+                           std::size_t largest, const Context& context) {
   const std::size_t each = largest * 3 / 10;
-  std::string sections = strip_section(study, view, each, part_of(progress, 0, 0.5));
+  std::string sections = strip_section(study, view, each, context.part(0, 0.5));
   if (study.transfer) {
     sections +=
         section("Error and time",
                 "The paper's Table I. DE: mean squared distance of the target's triangles from "
                 "what the source's deformation makes of them (eq. 12). MPE: against the "
                 "transfer by all triangles; negative is worse.",
-                page.table() + charts(table_charts(*study.transfer, view.unit), view.threads));
+                page.table() + charts(table_charts(*study.transfer, view.unit), context));
   }
   if (study.components) {
-    sections += gallery_section(*study.components, view, each, part_of(progress, 0.5, 0.9));
+    sections += gallery_section(*study.components, view, each, context.part(0.5, 0.9));
   }
   const std::vector<Chart> weights = weight_charts(study);
   if (!weights.empty()) {
-    sections += section("Weights", "The strongest ones over time.", charts(weights, view.threads));
+    sections += section("Weights", "The strongest ones over time.", charts(weights, context));
   }
   return sections + page.run();
 }
@@ -347,7 +345,7 @@ std::string sections_below(const PageText& page, const ReportStudy& study, const
 }  // namespace
 
 ReportPage report_page(const ReportStudy& study, const ReportView& view, std::string_view viewer,
-                       const Progress& progress, std::size_t largest) {
+                       std::size_t largest, const Context& context) {
   const PageText page(study, view);
   const std::string head =
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -367,17 +365,18 @@ ReportPage report_page(const ReportStudy& study, const ReportView& view, std::st
   constexpr std::size_t kTags = 100;
   const std::size_t always =
       head.size() + player.size() + before.size() + between.size() + viewer.size() + kTags;
-  const auto packed_beside = [&](std::size_t used) {
+  const auto packed_beside = [&](std::size_t used, const Context& packing) {
     if (viewer.empty() || used >= largest) return PackedScene{};
-    return packed(scene_of(study, view), largest - used);
+    return packed(scene_of(study, view), largest - used, packing);
   };
-  // Meanwhile, as if pictures took nothing.
-  std::future<PackedScene> ahead = std::async(
-      view.threads == 1 ? std::launch::deferred : std::launch::async, packed_beside, always);
-  const std::string rest = sections_below(page, study, view, largest, progress);
+  // Meanwhile, as if pictures took nothing. Only this thread reports progress.
+  std::future<PackedScene> ahead =
+      std::async(context.threads() == 1 ? std::launch::deferred : std::launch::async, packed_beside,
+                 always, Context().with_threads(context.threads()));
+  const std::string rest = sections_below(page, study, view, largest, context);
   PackedScene scene = ahead.get();
   const std::size_t used = always + rest.size();
-  if (used + scene.json.size() > largest) scene = packed_beside(used);
+  if (used + scene.json.size() > largest) scene = packed_beside(used, context.part(0.9, 0.9));
 
   if (scene.json.empty()) {
     const std::string why = viewer.empty() ? "this mimetra was built without npm"

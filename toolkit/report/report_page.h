@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/report/report_pictures.h"
 
 namespace mimetra {
@@ -22,6 +22,6 @@ struct ReportPage {
 /// need some ten thousand): frames are thinned and pictures shrunk. It asks for nothing from
 /// elsewhere. `viewer`: the script of its 3D viewer, empty for none.
 ReportPage report_page(const ReportStudy& study, const ReportView& view, std::string_view viewer,
-                       const Progress& progress, std::size_t largest = kLargestReport);
+                       std::size_t largest = kLargestReport, const Context& context = {});
 
 }  // namespace mimetra

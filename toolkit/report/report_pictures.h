@@ -12,7 +12,6 @@ namespace mimetra {
 struct ReportView {
   Viewpoint viewpoint = {};
   std::string unit = {};
-  int threads = 0;  ///< 0 for all there are; the page does not depend on it
 
   static constexpr Option kUnit{"unit", &ReportView::unit};
 };

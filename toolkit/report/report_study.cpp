@@ -27,12 +27,14 @@ std::string short_name(const std::string& name) {
 }
 
 /// The run's call, with its sequence under the name that transfer gives it.
-Invocation call_of(const RunRead& run, std::vector<std::string>& notes) {
+Invocation call_of(const RunRead& run, std::vector<std::string>& notes, const Context& context) {
   Invocation call = run.invocation;
   if (!call.inputs.contains("source")) call.inputs["source"] = call.inputs.at("sequence");
   call.log = [&notes](LogLevel level, const std::string& message) {
     if (level == LogLevel::warning) notes.push_back(message);
   };
+  call.context = context;
+  call.context = with_notes_as_warnings(call);
   return call;
 }
 
@@ -56,14 +58,14 @@ const NamedData& target_of(const Invocation& call, const NamedData& run, const L
   return targets.front();
 }
 
-/// Does the steps of a run as it did them.
+/// Does the steps of a run as it did them. Contexts are parts of the call's.
 class RunSteps {
  public:
-  explicit RunSteps(const Invocation& call)
+  RunSteps(const Invocation& call, const Context& context)
       : call_(call),
         sequence_(call.sequence("source")),
-        targets_(targets_of(call)),
-        source_(source_of(call, targets_)) {}
+        targets_(targets_of(call, context)),
+        source_(source_of(call, targets_, context)) {}
 
   const Source& source() const { return source_; }
   /// One of the targets of the call, on the source's triangles.
@@ -82,23 +84,22 @@ class RunSteps {
   bool selects() const { return region_options().select == Selector::transfer; }
 
   /// As the run chose them for a target, or with another number of discs at most.
-  Found regions_for(const Target& target, std::optional<int> discs,
-                    const Progress& progress) const {
+  Found regions_for(const Target& target, std::optional<int> discs, const Context& context) const {
     const Stopwatch stopwatch;
     RegionChoiceOptions options = with_most_discs(region_options(), call_.parameters);
     if (discs) options.discs = discs;
-    const SolveOptions of_solving = solve_options(call_, progress);
+    const SolveOptions of_solving = solve_options(call_);
     Found found = as_given({});
     found.regions = in_command_terms(call_.parameters, [&] {
-      const PlacedSource placed = placed_at(target, source_, of_solving);
-      RegionSelector selector(source_, options, analysis_options({}));
-      return selector(placed.source, target, of_solving);
+      const PlacedSource placed = placed_at(target, source_, of_solving.axes, context.part(0, 0));
+      RegionSelector selector(source_, options, analysis_options());
+      return selector(placed.source, target, of_solving, context);
     });
     found.seconds = stopwatch.seconds();
     return found;
   }
 
-  Found regions_as_run(const Progress& progress) const {
+  Found regions_as_run(const Context& context) const {
     const bool may_be_painted = call_.parameters.find("paint") != nullptr;
     if (const auto painted = may_be_painted ? painted_region_of(call_) : std::nullopt) {
       return as_given(painted->regions);
@@ -107,110 +108,102 @@ class RunSteps {
       return as_given(given->regions);
     }
     const auto given = given_components(call_);
-    if (!given) return regions_of(main_count(call_.parameters), progress);
-    Analysis analysis = analysis_of(*given, sequence_, source_.moving, analysis_options(progress));
-    return found_by(std::move(analysis), 0);
+    if (!given) return regions_of(main_count(call_.parameters), context);
+    return found_by(analysis_of(*given, sequence_, source_.moving, analysis_options(), context), 0,
+                    context);
   }
 
-  Found regions_of(int count, const Progress& progress) const {
+  Found regions_of(int count, const Context& context) const {
     const Stopwatch stopwatch;
-    AnalysisOptions options = analysis_options(progress);
-    options.decomposition.count = count;
+    AnalysisOptions options = analysis_options();
+    options.count = count;
+    const Context bounded = context.with_memory(within_memory(call_).memory());
     Analysis analysis =
-        in_command_terms(call_.parameters, [&] { return analyse(source_, options); });
-    return found_by(std::move(analysis), stopwatch.seconds());
+        in_command_terms(call_.parameters, [&] { return analyse(source_, options, bounded); });
+    return found_by(std::move(analysis), stopwatch.seconds(), context);
   }
 
-  EvaluatedTransfer full(const Target& target, const Progress& progress) const {
+  EvaluatedTransfer full(const Target& target, const Context& context) const {
     return in_command_terms(call_.parameters, [&] {
-      return evaluate_full(source_, target, solve_options(call_, progress));
+      return evaluate_full(source_, target, solve_options(call_), context);
     });
   }
 
-  Regions completed(Found& found, const Target& target) const {
+  Regions completed(Found& found, const Target& target, const Context& context) const {
     if (selects()) return found.regions;
-    return found.completer(found.regions, target, solve_options(call_, {}));
+    return found.completer(found.regions, target, solve_options(call_), context);
   }
 
   EvaluatedTransfer by(const Regions& regions, const EvaluatedTransfer& full, const Target& target,
-                       const Progress& progress) const {
+                       const Context& context) const {
     return in_command_terms(call_.parameters, [&] {
-      return evaluate_by(regions, full, source_, target, solve_options(call_, progress));
+      return evaluate_by(regions, full, source_, target, solve_options(call_), context);
     });
   }
 
  private:
-  static SolveOptions solve_options(const Invocation& call, const Progress& progress) {
+  static SolveOptions solve_options(const Invocation& call) {
     SolveOptions options = solving_parameters().read(call.parameters);
     if (call.inputs.contains("target")) set_usual_border(call, options);
-    options.threads = call.threads;
-    options.progress = progress;
-    options.notes = warnings_of(call);
     const AnalysisOptions analysis = analysis_parameters().read(call.parameters);
     options.edges = edge_sum(analysis.compatibility);
     options.distances = analysis.distances;
     return options;
   }
 
-  static std::vector<MatchedTarget> targets_of(const Invocation& call) {
+  static std::vector<MatchedTarget> targets_of(const Invocation& call, const Context& context) {
     std::vector<MatchedTarget> targets;
     if (!call.inputs.contains("target")) return targets;
     const MeshSequence& sequence = call.sequence("source");
-    const SourceOptions of_source = source_rest_parameters(&sequence).read(call.parameters);
+    const SourceOptions of_source =
+        source_rest_parameters().read(call.parameters, &call.get<FieldSequence>("source"));
     for (const Target& target : mimetra::targets_of(call)) {
       targets.push_back(in_command_terms(call.parameters, [&] {
-        return MatchedTarget(sequence, target,
-                             {.source_rest = asked_rest(sequence, of_source),
-                              .threads = call.threads,
-                              .notes = warnings_of(call)});
+        return MatchedTarget(sequence, target, asked_rest(sequence, of_source), context);
       }));
     }
     return targets;
   }
 
-  static Source source_of(const Invocation& call, const std::vector<MatchedTarget>& targets) {
+  static Source source_of(const Invocation& call, const std::vector<MatchedTarget>& targets,
+                          const Context& context) {
     const NamedData& input = call.input("source");
     const MeshSequence& sequence = call.sequence("source");
-    BoundParameters<SourceOptions> list = alignment_parameters(&sequence);
-    list.add(targets.empty() ? rest_parameters(&sequence) : source_rest_parameters(&sequence));
-    SourceOptions options = described(list.read(call.parameters), input);
-    options.notes = warnings_of(call);
+    BoundParameters<SourceOptions> list = alignment_parameters();
+    list.add(targets.empty() ? rest_parameters() : source_rest_parameters());
+    const SourceOptions options =
+        described(list.read(call.parameters, &std::get<FieldSequence>(input.data)), input);
+    JointSearch joint;
     if (!targets.empty()) {
       std::vector<Target> all;
       all.reserve(targets.size());
       for (const MatchedTarget& target : targets) all.push_back(*target);
-      options.joint = joint_search(all, solve_options(call, {}));
+      joint = joint_search(all, solve_options(call));
     }
-    return in_command_terms(call.parameters, [&] { return prepare_source(sequence, options); });
+    return in_command_terms(call.parameters,
+                            [&] { return prepare_source(sequence, options, joint, context); });
   }
 
   Found as_given(const Regions& regions) const {
-    return {regions, RegionCompleter(source_, region_options(), analysis_options({}))};
+    return {regions, RegionCompleter(source_, region_options(), analysis_options())};
   }
 
-  Found found_by(Analysis analysis, double seconds) const {
-    Regions regions = choose_regions(analysis, region_options());
+  Found found_by(Analysis analysis, double seconds, const Context& context) const {
+    Regions regions = choose_regions(analysis, region_options(), context.part(1, 1));
     RegionCompleter completer(analysis, region_options());
     return {std::move(regions), std::move(completer), std::move(analysis.components), seconds};
   }
 
-  AnalysisOptions analysis_options(const Progress& progress) const {
-    BoundParameters<AnalysisOptions> list =
-        analysis_parameters(&call_.get<FieldSequence>("source"));
-    if (call_.inputs.contains("target")) list.add(analysis_rest_parameters(&sequence_));
-    AnalysisOptions options = list.read(call_.parameters);
-    options.threads = call_.threads;
-    options.notes = warnings_of(call_);
-    options.progress = progress;
-    return options;
+  AnalysisOptions analysis_options() const {
+    BoundParameters<AnalysisOptions> list = analysis_parameters();
+    if (call_.inputs.contains("target")) list.add(analysis_rest_parameters());
+    return list.read(call_.parameters, &call_.get<FieldSequence>("source"));
   }
 
   RegionChoiceOptions region_options() const {
     BoundParameters<RegionChoiceOptions> list = region_parameters();
     if (!targets_.empty()) list.add(completion_parameters());
-    RegionChoiceOptions options = list.read(call_.parameters);
-    options.notes = warnings_of(call_);
-    return options;
+    return list.read(call_.parameters);
   }
 
   const Invocation& call_;
@@ -270,13 +263,12 @@ std::vector<int> regions_over(const std::vector<int>& regions, const Target& tar
 
 ReportedTransfer transferred(const RunSteps& steps, const Target& to, RunSteps::Found& main,
                              const std::vector<int>& counts, std::vector<std::string>& notes,
-                             const Progress& progress) {
+                             const Context& context) {
   ReportedTransfer transfer;
   transfer.target = short_name(to.name);
-  EvaluatedTransfer full =
-      apart_from(notes, [&] { return steps.full(to, part_of(progress, 0, 0.1)); });
-  main.regions = steps.completed(main, to);
-  EvaluatedTransfer by_regions = steps.by(main.regions, full, to, part_of(progress, 0.1, 0.2));
+  EvaluatedTransfer full = apart_from(notes, [&] { return steps.full(to, context.part(0, 0.1)); });
+  main.regions = steps.completed(main, to, context.part(0.1, 0.1));
+  EvaluatedTransfer by_regions = steps.by(main.regions, full, to, context.part(0.1, 0.2));
   main.regions = std::move(by_regions.regions);
   transfer.expressions = by_regions.solution.weight_names();
   const EvaluationRow main_row = completed(by_regions.row, main, steps);
@@ -285,15 +277,15 @@ ReportedTransfer transferred(const RunSteps& steps, const Target& to, RunSteps::
   double done = 0.2;
   const double each = (1 - done) / static_cast<double>(std::max<std::size_t>(1, more.size()));
   for (const int k : more) {
-    const Progress part = part_of(progress, done, done + each);
+    const Context part = context.part(done, done + each);
     done += each;
     if (k == main_row.k || k > main.regions.vertices) continue;
     transfer.rows.push_back(apart_from(notes, [&] {
-      const Progress until_found = part_of(part, 0, 0.7);
+      const Context until_found = part.part(0, 0.7);
       auto found = steps.selects() ? steps.regions_for(to, k, until_found)
                                    : steps.regions_of(k, until_found);
-      found.regions = steps.completed(found, to);
-      return completed(steps.by(found.regions, full, to, part_of(part, 0.7, 1)).row, found, steps);
+      found.regions = steps.completed(found, to, part.part(0.7, 0.7));
+      return completed(steps.by(found.regions, full, to, part.part(0.7, 1)).row, found, steps);
     }));
   }
   std::ranges::stable_sort(transfer.rows, {}, [](const EvaluationRow& row) { return row.k; });
@@ -336,8 +328,8 @@ int main_count(const Parameters& parameters) {
   return static_cast<int>(*std::ranges::max_element(parameters.integers("k")));
 }
 
-ReportStudy study(const NamedData& run, const std::vector<int>& counts, const Progress& progress,
-                  const Log& log) {
+ReportStudy study(const NamedData& run, const std::vector<int>& counts, const Log& log,
+                  const Context& context) {
   const RunRead& read = *run.origin.run;
   ReportStudy result;
   result.run = read.record;
@@ -346,21 +338,21 @@ ReportStudy study(const NamedData& run, const std::vector<int>& counts, const Pr
     log(LogLevel::warning, file.string() + ": has changed since " + read.record.manifest.string() +
                                " was written; the report shows what it gives now");
   }
-  const Invocation call = call_of(read, result.notes);
+  const Invocation call = call_of(read, result.notes, context);
   result.source = short_name(call.input("source").name);
-  const RunSteps steps(call);
+  const RunSteps steps(call, call.context.part(0, 0));
   result.moved_head = !steps.source().motion.empty();
   result.sequence = MeshSequence(*steps.source().sequence);
   const NamedData* target = call.inputs.contains("target") ? &target_of(call, run, log) : nullptr;
   const double found_at = target ? 0.3 : 1;
-  const Progress until_found = part_of(progress, 0, found_at);
+  const Context until_found = call.context.part(0, found_at);
   auto found = target && steps.selects()
                    ? steps.regions_for(steps.matched(*target), {}, until_found)
                    : steps.regions_as_run(until_found);
   if (target) {
     result.transfer =
         transferred(steps, steps.matched(*target), found, all_counts(counts, call.parameters),
-                    result.notes, part_of(progress, found_at, 1));
+                    result.notes, call.context.part(found_at, 1));
   }
   result.regions = std::move(found.regions);
   result.components = std::move(found.components);

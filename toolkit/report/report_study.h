@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/operations/operation.h"
 #include "toolkit/pipeline/evaluation.h"
 
@@ -46,7 +46,7 @@ int main_count(const Parameters& parameters);
 
 /// `counts`: numbers of components that the table has besides the run's own; those above what the
 /// mesh can have are left out. Throws what the run's operation throws.
-ReportStudy study(const NamedData& run, const std::vector<int>& counts, const Progress& progress,
-                  const Log& log);
+ReportStudy study(const NamedData& run, const std::vector<int>& counts, const Log& log = {},
+                  const Context& context = {});
 
 }  // namespace mimetra

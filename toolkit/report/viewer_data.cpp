@@ -215,7 +215,7 @@ Json json_of_poses(const MixedPoses& mixed) {
 
 /// All of a scene; empty where a mesh's poses are null.
 std::string with_frames(Json json, const ViewerScene& scene, const std::vector<int>& frames,
-                        const PackPoses& pack) {
+                        const PackPoses& pack, const Context& context) {
   Json times = Json::array();
   for (const int frame : frames) times.push_back(scene.meshes.front().sequence.times()[frame]);
   json["times"] = times;
@@ -223,14 +223,15 @@ std::string with_frames(Json json, const ViewerScene& scene, const std::vector<i
   const std::vector<std::size_t> surface = surface_of_each(scene.meshes);
   const int count = static_cast<int>(scene.meshes.size());
   std::vector<Json> meshes(scene.meshes.size());
-  parallel_for(count, scene.threads, [&](int i) {
+  const auto pack_one = [&](int i) {
     const auto place = static_cast<std::size_t>(i);
     const ViewerMesh& mesh = scene.meshes[place];
     Json packed = pack(mesh.sequence);
     if (packed.is_null()) return;
     packed.update({{"role", mesh.role}, {"name", mesh.name}, {"surface", surface[place]}});
     meshes[place] = std::move(packed);
-  });
+  };
+  parallel_for(count, pack_one, context);
   for (Json& mesh : meshes) {
     if (mesh.is_null()) return "";
     json["meshes"].push_back(std::move(mesh));
@@ -255,19 +256,21 @@ double pose_bytes(const ViewerScene& scene) {
 
 /// All frames, as mixtures of few poses; empty where these do not give them, or are too many for
 /// `bytes`.
-std::string with_mixed_frames(const Json& still, const ViewerScene& scene, std::size_t bytes) {
+std::string with_mixed_frames(const Json& still, const ViewerScene& scene, std::size_t bytes,
+                              const Context& context) {
   // zlib and base64 leave hardly less of poses that nothing follows from.
   constexpr double kLeastShare = 0.5;
   const auto most =
       static_cast<Eigen::Index>(static_cast<double>(bytes) / (kLeastShare * pose_bytes(scene)));
   std::vector<int> frames(static_cast<std::size_t>(scene.meshes.front().sequence.frames()));
   std::iota(frames.begin(), frames.end(), 0);
-  const int threads = scene.meshes.size() == 1 ? scene.threads : 1;
-  return with_frames(still, scene, frames, [&](const MeshSequence& sequence) -> Json {
+  const Context each = scene.meshes.size() == 1 ? context : context.serial();
+  const auto pack = [&](const MeshSequence& sequence) -> Json {
     if (std::ssize(frames) * std::int64_t{3} * sequence.vertices() > INT32_MAX) return {};
-    const auto poses = mixed(sequence, frames, most, threads);
+    const auto poses = mixed(sequence, frames, most, each);
     return poses ? json_of_poses(*poses) : Json();
-  });
+  };
+  return with_frames(still, scene, frames, pack, context);
 }
 
 }  // namespace
@@ -282,13 +285,15 @@ std::vector<int> thinned(int frames, int count) {
   return result;
 }
 
-PackedScene packed(const ViewerScene& scene, std::size_t bytes) {
+PackedScene packed(const ViewerScene& scene, std::size_t bytes, const Context& context) {
   // zlib makes poses hardly ever this much smaller.
   constexpr double kBestCompression = 40;
   constexpr double kSafety = 0.97;
   const Json still = still_part(scene);
   const int frames = scene.meshes.front().sequence.frames();
-  std::string mixed = with_mixed_frames(still, scene, bytes);
+  // Nobody knows how many attempts it takes.
+  const Context attempt = context.part(0, 0);
+  std::string mixed = with_mixed_frames(still, scene, bytes, attempt);
   if (!mixed.empty() && mixed.size() <= bytes) return {std::move(mixed), frames};
 
   const auto always = static_cast<double>(script_text(still).size());
@@ -296,9 +301,10 @@ PackedScene packed(const ViewerScene& scene, std::size_t bytes) {
   int count = std::min(seen_frames(scene), std::max(2, static_cast<int>(most)));
   while (true) {
     const std::vector<int> kept = thinned(frames, count);
-    std::string json = with_frames(still, scene, kept, [&kept](const MeshSequence& sequence) {
+    const auto pack = [&kept](const MeshSequence& sequence) {
       return json_of_poses(quantized(sequence, kept));
-    });
+    };
+    std::string json = with_frames(still, scene, kept, pack, attempt);
     if (json.size() <= bytes) return {std::move(json), count};
     if (count <= 2) return {};
     const double share =

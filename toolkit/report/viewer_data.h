@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "toolkit/drawing/viewpoint.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/mesh_sequence.h"
 
 namespace mimetra {
@@ -20,7 +21,6 @@ struct ViewerMesh {
 struct ViewerScene {
   std::vector<ViewerMesh> meshes;
   Viewpoint viewpoint = {.yaw = 0, .pitch = 0};
-  int threads = 0;  ///< to pack with, 0 for all there are; what is packed does not depend on it
 };
 
 /// `count` of `frames` frames, evenly spread, the first and the last among them (all where there
@@ -35,6 +35,6 @@ struct PackedScene {
 
 /// All frames, where the poses of each mesh are mixtures of few, to a step, that `bytes` hold;
 /// otherwise as many as they hold, but not more than 30 a second.
-PackedScene packed(const ViewerScene& scene, std::size_t bytes);
+PackedScene packed(const ViewerScene& scene, std::size_t bytes, const Context& context = {});
 
 }  // namespace mimetra

@@ -10,7 +10,6 @@
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/near_tie.h"
 #include "toolkit/mesh/product_blocking.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/splocs/component_update.h"
 #include "toolkit/splocs/decomposition_plan.h"
 #include "toolkit/splocs/motion.h"
@@ -147,7 +146,8 @@ struct Iterate {
 template <typename Scalar>
 void alternate(Components& result, double X_norm2, const BlockSource<Scalar>& X,
                const std::optional<TimeBasis>& basis, Start start, SupportMaps support,
-               const Progress& progress, const Reduction& reduction) {
+               const Context& context) {
+  const Reduction reduction(X.part().mesh_vertices(), context);
   const DecompositionOptions& options = result.options;
   const AdmmOptions admm{options.sparsity, options.rho, options.admm_iterations};
   const auto over_frames = [&basis](const Eigen::MatrixXd& P) -> Eigen::MatrixXd {
@@ -160,7 +160,7 @@ void alternate(Components& result, double X_norm2, const BlockSource<Scalar>& X,
   std::vector<double>& energies = result.energies;
   Iterate<Scalar> best;
   for (int iteration = 0; iteration < *options.iterations; ++iteration) {
-    report_progress(progress, static_cast<double>(iteration) / *options.iterations);
+    context.report(static_cast<double>(iteration) / *options.iterations);
     // What the best so far is, the next iteration overwrites.
     if (options.returned == ReturnedIterate::best && iteration > 0 &&
         best_of(energies) == iteration - 1) {
@@ -215,15 +215,16 @@ Eigen::Index poses_for_all(const DecompositionPlan& plan, const Reduction& reduc
 
 /// The motion in the precision and the basis that the options want, from the start on.
 void iterate(Components& result, Motion motion, Start start, SupportMaps support,
-             const Progress& progress, const Reduction& reduction, const DecompositionPlan& plan) {
+             const DecompositionPlan& plan, const Context& context) {
   const DecompositionOptions& options = result.options;
   // Of the progress.
   const double basis_share = options.basis_tolerance > 0 ? 0.3 : 0;
   std::optional<TimeBasis> basis;
   if (options.basis_tolerance > 0) {
-    const Eigen::Index most = poses_for_all(plan, reduction);
-    basis = time_basis(*motion.X, motion.norm2, options.basis_tolerance, reduction, most,
-                       part_of(progress, 0, basis_share));
+    const Eigen::Index most =
+        poses_for_all(plan, Reduction(motion.X->part().mesh_vertices(), context));
+    basis = time_basis(*motion.X, motion.norm2, options.basis_tolerance, most,
+                       context.part(0, basis_share));
     if (!basis && most < motion.X->rows() / 2) {
       throw MismatchError(
           "option 'basis-tolerance': the motion needs a basis of many poses, of which option "
@@ -232,7 +233,7 @@ void iterate(Components& result, Motion motion, Start start, SupportMaps support
           "; allow more memory or a larger tolerance, or take all frames: tolerance 0");
     }
   }
-  const Progress of_iterations = part_of(progress, basis_share, 1);
+  const Context of_iterations = context.part(basis_share, 1);
   MotionPlace place = plan.place;
   if (basis) {
     // What is not needed any more is released: it is the largest array there is.
@@ -244,11 +245,10 @@ void iterate(Components& result, Motion motion, Start start, SupportMaps support
   if (options.precision == IterationPrecision::single_precision) {
     const auto X = in_single_precision(*motion.kept, place);
     motion.X.reset();
-    alternate(result, motion.norm2, *X, basis, std::move(start), std::move(support), of_iterations,
-              reduction);
+    alternate(result, motion.norm2, *X, basis, std::move(start), std::move(support), of_iterations);
   } else {
     alternate(result, motion.norm2, *motion.X, basis, std::move(start), std::move(support),
-              of_iterations, reduction);
+              of_iterations);
   }
 }
 
@@ -273,48 +273,6 @@ void finish(Components& result, const Reduction& reduction) {
     result.displacements.row(k).setZero();
   }
   result.displacements *= result.scale;
-}
-
-Components decomposed(const SequencePart& sequence, const DecompositionOptions& options,
-                      const Ranks* ranks = nullptr) {
-  Reduction reduction(sequence.rest.rows(), options.threads, ranks);
-  const auto vertices = static_cast<int>(reduction.part().mesh_vertices());
-  require_valid(options);
-  require_decomposable(sequence, options.count, reduction);
-  const VertexPart part = reduction.part();
-  const DecompositionPlan plan = planned_decomposition(sequence.frames, part, options);
-  reduction = Reduction(part.mesh_vertices(), plan.threads, ranks);
-  require_valid(options.parts, vertices);
-  fix_product_blocking();
-  Components result;
-  result.rest = sequence.rest;
-  result.triangles = sequence.triangles;
-  const double size = diameter(sequence.rest, sequence.triangles);
-  result.d_min = options.d_min.value_or(DecompositionOptions::kMinimumShare * size);
-  result.d_max = options.d_max.value_or(DecompositionOptions::kMaximumShare * size);
-  require_valid(result.d_min, result.d_max);
-  result.options = options;
-  result.options.iterations = options.iterations.value_or(DecompositionOptions::kUsualIterations);
-  result.options.distances = nullptr;
-  result.options.progress = nullptr;
-
-  Motion motion = scaled_motion(sequence, options.scale, reduction, plan.place);
-  result.scale = motion.scale;
-  const DistanceFunction distances =
-      options.distances ? options.distances
-                        : SurfaceDistances(result.rest, result.triangles, Weld::exact(result.rest),
-                                           GeodesicMethod::heat, options.threads);
-  const SupportFunction support = support_function(distances, vertices, result.d_min, result.d_max);
-  DecompositionOptions of_start = options;
-  const double start_share = kStartIterations / (kStartIterations + *result.options.iterations);
-  of_start.progress = part_of(options.progress, 0, start_share);
-  Start start = greedy_start(*motion.X, support, of_start, reduction);
-  iterate(result, std::move(motion), std::move(start),
-          SupportMaps(support, options.count, part, options.parts.of_vertices()),
-          part_of(options.progress, start_share, 1), reduction, plan);
-  finish(result, reduction);
-  report_progress(options.progress, 1);
-  return result;
 }
 
 /// Distances are dealt out to the ranks by vertex, so that each is computed once and kept there.
@@ -357,26 +315,60 @@ Eigen::VectorXd PartWeights::of_vertices() const {
   return result;
 }
 
-Components decompose(const FrameSource& sequence, const DecompositionOptions& options) {
-  return decomposed({sequence.rest(), sequence.triangles(), sequence}, options);
-}
-
 Components decompose(const FrameSource& sequence, const DecompositionOptions& options,
-                     const Ranks& ranks) {
-  const Reduction reduction(sequence.vertices(), 1, &ranks);
+                     const Context& context) {
+  if (context.ranks().count() == 1) {
+    return decompose_part({sequence.rest(), sequence.triangles(), sequence}, options, context);
+  }
+  const Reduction reduction(sequence.vertices(), context);
   const auto own = own_vertices(sequence, reduction.part());
   DecompositionOptions shared = options;
   if (shared.distances) shared.distances = dealt(shared.distances, reduction);
   Components components =
-      decompose_part({sequence.rest(), sequence.triangles(), *own}, shared, ranks);
+      decompose_part({sequence.rest(), sequence.triangles(), *own}, shared, context);
   components.displacements = gathered(components.displacements, 3, reduction);
   components.support = gathered(components.support, 1, reduction);
   return components;
 }
 
 Components decompose_part(const SequencePart& sequence, const DecompositionOptions& options,
-                          const Ranks& ranks) {
-  return decomposed(sequence, options, &ranks);
+                          const Context& context) {
+  require_valid(options);
+  const auto vertices = static_cast<int>(sequence.rest.rows());
+  Reduction reduction(vertices, context);
+  require_decomposable(sequence, options.count, reduction);
+  const VertexPart part = reduction.part();
+  const DecompositionPlan plan = planned_decomposition(sequence.frames, part, options, context);
+  const Context planned = context.with_threads(plan.threads);
+  reduction = Reduction(vertices, planned);
+  require_valid(options.parts, vertices);
+  fix_product_blocking();
+  Components result;
+  result.rest = sequence.rest;
+  result.triangles = sequence.triangles;
+  const double size = diameter(sequence.rest, sequence.triangles);
+  result.d_min = options.d_min.value_or(DecompositionOptions::kMinimumShare * size);
+  result.d_max = options.d_max.value_or(DecompositionOptions::kMaximumShare * size);
+  require_valid(result.d_min, result.d_max);
+  result.options = options;
+  result.options.iterations = options.iterations.value_or(DecompositionOptions::kUsualIterations);
+  result.options.distances = nullptr;
+
+  Motion motion = scaled_motion(sequence, options.scale, reduction, plan.place);
+  result.scale = motion.scale;
+  const DistanceFunction distances =
+      options.distances ? options.distances
+                        : SurfaceDistances(result.rest, result.triangles, Weld::exact(result.rest),
+                                           GeodesicMethod::heat, context);
+  const SupportFunction support = support_function(distances, vertices, result.d_min, result.d_max);
+  const double start_share = kStartIterations / (kStartIterations + *result.options.iterations);
+  Start start = greedy_start(*motion.X, support, options, planned.part(0, start_share));
+  iterate(result, std::move(motion), std::move(start),
+          SupportMaps(support, options.count, part, options.parts.of_vertices()), plan,
+          planned.part(start_share, 1));
+  finish(result, reduction);
+  context.report(1);
+  return result;
 }
 
 }  // namespace mimetra

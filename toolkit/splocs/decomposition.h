@@ -3,14 +3,13 @@
 #include <optional>
 #include <vector>
 
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/mesh_sequence.h"
 #include "toolkit/splocs/decomposition_options.h"
 
 namespace mimetra {
 
-class Ranks;
-class Reduction;
 struct SequencePart;
 
 /// Sparse localized deformation components: frame f is rest + sum_k W_fk C_k, approximately.
@@ -41,21 +40,25 @@ struct Components {
 /// and returns the iterate of least energy unless the options want the last.
 ///
 /// Every product with X is with K columns (P = X C^T, W^T X); the residual is never formed. The
-/// result is the same for every number of threads and bound of memory. The rest pose is the
-/// sequence's.
+/// rest pose is the sequence's.
 ///
-/// Throws MismatchError where count > 3N, where there is one frame only, nothing moves by more than
-/// kLeastMotion, or options.memory is too little; std::invalid_argument for options out of range;
-/// what reading throws, OutputError where motion cannot be kept in a file; Cancelled.
+/// Motion that exceeds the memory of the context is kept in a file without a name, or read again
+/// for every pass, and fewer threads work at a time. If several ranks share the computation, all
+/// read the sequence, but each reads its own vertices only (VertexPart) and computes its share of
+/// the distances that the options have; all return the same.
+///
+/// Throws MismatchError if count > 3N, if there is one frame only, if nothing moves by more than
+/// kLeastMotion, or if the memory is too little; std::invalid_argument for options out of range;
+/// what reading throws; OutputError if motion cannot be kept in a file; Cancelled.
 ///
 /// [Neumann et al. Sparse Localized Deformation Components. ACM TOG 32(6), 2013], eq. 1 to 9;
 /// Region-based deformation transfer, eq. 6 and 7.
-Components decompose(const FrameSource& sequence, const DecompositionOptions& options = {});
+Components decompose(const FrameSource& sequence, const DecompositionOptions& options = {},
+                     const Context& = {});
 
-/// The same on one of several ranks, each with the poses of its own vertices (VertexPart). The mesh
-/// and the options are the whole mesh's and the same on each rank. What is returned is the same on
-/// all ranks, but for displacements (K x 3n) and support (K x n): they are those of the rank's n
-/// vertices.
+/// The same if each rank has the poses of its own vertices only. The mesh and the options are the
+/// whole mesh's and the same on each rank. All ranks return the same, but for displacements
+/// (K x 3n) and support (K x n), which are of the rank's n vertices.
 ///
 /// On ranks whose processors are of one kind, the result is the same bits as on one rank. Elsewhere
 /// it is that up to rounding: each rank computes the diameter of the mesh, the distances and its
@@ -67,13 +70,7 @@ Components decompose(const FrameSource& sequence, const DecompositionOptions& op
 /// from its progress, what its distances throw, std::bad_alloc), the others wait for it: who stops
 /// one must stop all.
 Components decompose_part(const SequencePart& sequence, const DecompositionOptions& options,
-                          const Ranks& ranks);
-
-/// The same on ranks that can all read the whole sequence, of which each reads its own vertices
-/// only; distances that the options have are computed by one rank each. What is returned is the
-/// whole, on all ranks.
-Components decompose(const FrameSource& sequence, const DecompositionOptions& options,
-                     const Ranks& ranks);
+                          const Context& = {});
 
 /// How well components tell the sequence.
 struct DecompositionError {
@@ -87,17 +84,14 @@ struct DecompositionError {
   double sparsity = 0;
 };
 
-/// Within the memory of the components' options. Throws MismatchError where the sizes of sequence
-/// and components differ, what reading throws.
-DecompositionError decomposition_error(const FrameSource& sequence, const Components& components);
-
-/// The same on ranks that can all read the whole sequence.
+/// Keeps within the memory of the context, as decompose() does. Throws MismatchError if the sizes
+/// of sequence and components differ or the memory is too little, and what reading throws.
 DecompositionError decomposition_error(const FrameSource& sequence, const Components& components,
-                                       const Ranks& ranks);
+                                       const Context& = {});
 
-/// The same on all ranks of decompose_part(), for what it returned.
+/// The same for what decompose_part() returned, on all ranks.
 DecompositionError decomposition_error(const SequencePart& sequence, const Components& components,
-                                       const Reduction& reduction);
+                                       const Context& = {});
 
 /// Distance from each centre that holds `share` of its component's energy (K); 0 where it died.
 Eigen::VectorXd energy_radius(const Components& components, const DistanceFunction& distances,

@@ -79,14 +79,12 @@ ErrorSums error_sums(const BlockSource<double>& X, const Components& components,
 /// Each block is needed once: it is read from the sequence where that is no waste.
 std::unique_ptr<BlockSource<double>> motion_of(const SequencePart& sequence,
                                                const Components& components,
-                                               const Reduction& reduction) {
+                                               const Reduction& reduction, MotionPlace place) {
   const SequencePart part{components.rest, sequence.triangles, sequence.frames};
   if (sequence.frames.reads_vertices()) {
     return std::make_unique<SequenceBlocks>(part, reduction.part());
   }
-  const DecompositionPlan plan =
-      planned_decomposition(sequence.frames, reduction.part(), components.options);
-  return kept_displacements(part, reduction.part(), plan.place, reduction.threads());
+  return kept_displacements(part, reduction.part(), place, reduction.context());
 }
 
 /// Distance within which `share` of the energy lies (both N); +infinity where the reachable
@@ -110,32 +108,33 @@ double radius_holding(double share, const Eigen::VectorXd& energies,
 
 }  // namespace
 
-DecompositionError decomposition_error(const FrameSource& sequence, const Components& components) {
-  const VertexPart all(sequence.vertices());
-  const int threads = planned_decomposition(sequence, all, components.options).threads;
-  return decomposition_error({sequence.rest(), sequence.triangles(), sequence}, components,
-                             Reduction(sequence.vertices(), threads));
-}
-
 DecompositionError decomposition_error(const FrameSource& sequence, const Components& components,
-                                       const Ranks& ranks) {
+                                       const Context& context) {
+  const Ranks& ranks = context.ranks();
+  if (ranks.count() == 1) {
+    const SequencePart whole{sequence.rest(), sequence.triangles(), sequence};
+    return decomposition_error(whole, components, context);
+  }
   const VertexPart part(sequence.vertices(), ranks.rank(), ranks.count());
   const auto own = own_vertices(sequence, part);
-  const int threads = planned_decomposition(*own, part, components.options).threads;
   Components of_part = components;
   of_part.displacements =
       components.displacements.middleCols(3 * part.first(), 3 * part.vertices());
-  return decomposition_error({sequence.rest(), sequence.triangles(), *own}, of_part,
-                             Reduction(sequence.vertices(), threads, &ranks));
+  return decomposition_error(SequencePart{sequence.rest(), sequence.triangles(), *own}, of_part,
+                             context);
 }
 
 DecompositionError decomposition_error(const SequencePart& sequence, const Components& components,
-                                       const Reduction& reduction) {
+                                       const Context& context) {
   fix_product_blocking();
-  const auto vertices = reduction.part().mesh_vertices();
+  const auto vertices = sequence.rest.rows();
   require_same_size(sequence, components, vertices);
-  const ErrorSums sums =
-      error_sums(*motion_of(sequence, components, reduction), components, reduction);
+  const VertexPart part = Reduction(vertices, context).part();
+  const DecompositionPlan plan =
+      planned_decomposition(sequence.frames, part, components.options, context);
+  const Reduction reduction(vertices, context.with_threads(plan.threads));
+  const auto X = motion_of(sequence, components, reduction, plan.place);
+  const ErrorSums sums = error_sums(*X, components, reduction);
   const double residual = std::sqrt(sums.residual2), variation = std::sqrt(sums.variation2);
   const double diagonal = box_diagonal(components.rest);
   const auto displacements = static_cast<double>(vertices) * components.count();

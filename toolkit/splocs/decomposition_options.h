@@ -3,7 +3,6 @@
 #include <optional>
 
 #include "toolkit/mesh/option.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/splocs/surface_distances.h"
 
 namespace mimetra {
@@ -96,14 +95,6 @@ struct DecompositionOptions {
   PartWeights parts = {};
   /// Distances along the rest pose; by default SurfaceDistances of its exactly welded vertices.
   DistanceFunction distances = {};
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  /// Bytes that it may take, as planned_decomposition() counts them; none for as many as it likes,
-  /// less than 0 where the process has more already.
-  /// The result does not depend on it: motion that is larger is kept in a file without a name, or
-  /// read again for every pass, and fewer threads work at a time.
-  std::optional<double> memory = {};
-  Progress progress = {};
 
   static constexpr Option kCount{"count", &DecompositionOptions::count, {.minimum = 1}};
   static constexpr Option kSparsity{"sparsity", &DecompositionOptions::sparsity, {.minimum = 0}};
@@ -115,13 +106,12 @@ struct DecompositionOptions {
   static constexpr Option kTolerance{
       "tolerance", &DecompositionOptions::tolerance, {.minimum = 0, .maximum = 1}};
   static constexpr Option kNonnegative{"nonnegative", &DecompositionOptions::nonnegative};
-  static constexpr Option kMemory{"memory", &DecompositionOptions::memory};
   static constexpr Option kPrecision{"precision", &DecompositionOptions::precision};
   static constexpr Option kBasisTolerance{
       "basis_tolerance", &DecompositionOptions::basis_tolerance, {.minimum = 0, .maximum = 0.5}};
   static constexpr auto declared() {
     return std::tuple(kCount, kSparsity, kRho, kIterations, kAdmmIterations, kTolerance,
-                      kNonnegative, kPrecision, kBasisTolerance, kMemory);
+                      kNonnegative, kPrecision, kBasisTolerance);
   }
 };
 

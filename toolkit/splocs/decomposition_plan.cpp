@@ -80,8 +80,8 @@ struct Sizes {
   double per_thread() const { return kBlocksPerThread * block() + kSumsPerThread * sums(); }
 };
 
-int threads_of(const DecompositionOptions& options) {
-  if (options.threads > 0) return options.threads;
+int threads_of(const Context& context) {
+  if (context.threads() > 0) return context.threads();
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
@@ -118,31 +118,32 @@ std::string megabytes(double bytes) {
 }  // namespace
 
 DecompositionPlan planned_decomposition(const FrameSource& frames, const VertexPart& part,
-                                        const DecompositionOptions& options) {
+                                        const DecompositionOptions& options,
+                                        const Context& context) {
   const Sizes sizes{static_cast<double>(frames.frames()), static_cast<double>(part.vertices()),
                     static_cast<double>(part.mesh_vertices()), static_cast<double>(options.count)};
-  const int threads = threads_of(options);
+  const int threads = threads_of(context);
+  const std::optional<double> memory = context.memory();
   const bool wants_basis = options.basis_tolerance > 0;
   const double worth = wants_basis ? frames.frames() / 2 : 0;
   // As many poses as are worth it and fit.
   const auto with_poses = [&](DecompositionPlan plan, int working) {
     const double of_pose = sizes.of_pose(working);
-    const double fitting =
-        options.memory ? std::max(0.0, (*options.memory - plan.bytes) / of_pose) : worth;
+    const double fitting = memory ? std::max(0.0, (*memory - plan.bytes) / of_pose) : worth;
     plan.poses = static_cast<Eigen::Index>(std::min(worth, fitting));
     plan.bytes += static_cast<double>(plan.poses) * of_pose;
     return plan;
   };
   DecompositionPlan plan;
-  plan.threads = options.threads;
+  plan.threads = context.threads();
   plan.bytes = sizes.fixed() + sizes.motion() + threads * sizes.per_thread();
   const double beside = std::min(worth, kPosesBesideMotion) * sizes.of_pose(threads);
-  if (!options.memory || plan.bytes + beside <= *options.memory) return with_poses(plan, threads);
+  if (!memory || plan.bytes + beside <= *memory) return with_poses(plan, threads);
 
-  const double free = *options.memory - sizes.fixed();
+  const double free = *memory - sizes.fixed();
   if (free < sizes.per_thread()) {
     throw MismatchError(
-        "option 'memory': what is left of it, " + megabytes(std::max(0.0, *options.memory)) +
+        "option 'memory': what is left of it, " + megabytes(std::max(0.0, *memory)) +
         ", does not hold a decomposition of " + std::to_string(frames.frames()) + " frames into " +
         std::to_string(options.count) + " components; allow at least " +
         megabytes(sizes.per_thread() - free) + " more, or take fewer components or frames");

@@ -12,7 +12,7 @@ enum class MotionPlace {
   sequence  ///< where they came from: they are read and made anew
 };
 
-/// How a decomposition keeps within DecompositionOptions::memory.
+/// How a decomposition keeps within the memory of its Context.
 struct DecompositionPlan {
   MotionPlace place = MotionPlace::memory;
   /// That work at a time, each on a block of 192 vertices over all frames; 0 for all there are.
@@ -27,12 +27,13 @@ struct DecompositionPlan {
   double scratch_bytes = 0;
 };
 
-/// For the poses of the vertices that a rank owns, F x 3n, on a mesh of part.mesh_vertices().
-/// Where the motion does not fit, it is read again for every pass if that is cheaper than to write
-/// it once and read it from a file (docs/large-data.md), or the file's disk has no room.
+/// For the poses of the vertices that a rank owns, F x 3n, on a mesh of part.mesh_vertices(). The
+/// context gives the most threads and the memory. If the motion does not fit, it is read again for
+/// every pass if that is cheaper than to write it once and read it from a file
+/// (docs/large-data.md), or if the file's disk has no room. Otherwise it is kept in the file.
 ///
-/// Throws MismatchError where one thread alone takes more than options.memory.
+/// Throws MismatchError if one thread alone takes more than the memory of the context.
 DecompositionPlan planned_decomposition(const FrameSource& frames, const VertexPart& part,
-                                        const DecompositionOptions& options);
+                                        const DecompositionOptions& options, const Context& = {});
 
 }  // namespace mimetra

@@ -112,7 +112,7 @@ Motion scaled_motion(const SequencePart& sequence, MotionScale unit, const Reduc
   const VertexPart& part = reduction.part();
   std::unique_ptr<KeptBlocks<double>> kept;
   if (place != MotionPlace::sequence) {
-    kept = kept_displacements(sequence, part, place, reduction.threads());
+    kept = kept_displacements(sequence, part, place, reduction.context());
   }
   const Eigen::MatrixXd spreads =
       kept ? spreads_of(*kept, reduction) : spreads_of(SequenceBlocks(sequence, part), reduction);
@@ -140,9 +140,10 @@ Motion scaled_motion(const SequencePart& sequence, MotionScale unit, const Reduc
   if (!kept) {
     return {std::make_unique<SequenceBlocks>(sequence, part, scale), nullptr, scale, norm2};
   }
-  parallel_for(kept->count(), reduction.threads(), [&kept, scale](int b) {
+  const auto divide = [&kept, scale](int b) {
     kept->change(b, [scale](KeptBlocks<double>::Block& block) { block /= scale; });
-  });
+  };
+  parallel_for(kept->count(), divide, reduction.context());
   KeptBlocks<double>* const blocks = kept.get();
   return {std::move(kept), blocks, scale, norm2};
 }

@@ -116,15 +116,16 @@ std::shared_ptr<const SequenceBlocks::Block> SequenceBlocks::block(int b) const 
 
 std::unique_ptr<KeptBlocks<double>> kept_displacements(const SequencePart& sequence,
                                                        const VertexPart& part, MotionPlace place,
-                                                       int threads) {
+                                                       const Context& context) {
   auto blocks = kept_blocks<double>(place, sequence.frames.frames(), part);
-  for_each_run(sequence.frames, {.threads = threads}, [&](int first, int count) {
+  const auto put_frames = [&](int first, int count) {
     const FrameBlock frames(sequence.frames, first, count);
     for (int b = 0; b < blocks->count(); ++b) {
       const auto rest = sequence.rest.middleRows(part.first() + blocks->first(b), blocks->size(b));
       blocks->put_rows(b, first, displaced(frames.poses(), blocks->first(b), rest));
     }
-  });
+  };
+  for_each_run(sequence.frames, put_frames, context);
   return blocks;
 }
 

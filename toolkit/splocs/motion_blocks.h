@@ -74,10 +74,10 @@ class SequenceBlocks : public BlockSource<double> {
   BlockPool<double> pool_;
 };
 
-/// Displacements of a part of a sequence from its rest pose (F x 3n), by `threads` threads. Throws
-/// what reading throws, OutputError. \pre as kept_blocks()
+/// Displacements of a part of a sequence from its rest pose (F x 3n). Throws what reading throws,
+/// OutputError. \pre as kept_blocks()
 std::unique_ptr<KeptBlocks<double>> kept_displacements(const SequencePart& sequence,
                                                        const VertexPart& part, MotionPlace place,
-                                                       int threads);
+                                                       const Context& = {});
 
 }  // namespace mimetra

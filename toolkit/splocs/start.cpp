@@ -6,7 +6,6 @@
 #include <Eigen/Eigenvalues>
 
 #include "toolkit/mesh/parallel.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/splocs/vertex_energies.h"
 #include "toolkit/splocs/weights.h"
 
@@ -85,7 +84,7 @@ class Residual {
     const int k = size();
     const double ww = w.squaredNorm();
     const Eigen::VectorXd overlap = start_.weights.leftCols(k).transpose() * w;
-    parallel_for(X_.count(), reduction_.threads(), [&](int b) {
+    const auto explain_block = [&](int b) {
       VertexBlocks<double>::Block& C = start_.components[b];
       Eigen::RowVectorXd wR = w.transpose() * *X_.block(b);
       wR.noalias() -= overlap.transpose() * C.topRows(k);
@@ -94,7 +93,8 @@ class Residual {
       energies_.segment(X_.first(b), X_.size(b)).array() -=
           (2 * share - share.square()) * sums_over_axes(wR.array().square()).array() / ww;
       C.row(k) = wR.array() * share.transpose().replicate(1, 3) / ww;
-    });
+    };
+    parallel_for(X_.count(), explain_block, reduction_.context());
     start_.weights.col(k) = w;
     start_.centers.push_back(center);
   }
@@ -158,10 +158,11 @@ Eigen::VectorXd oriented_weights(const Eigen::VectorXd& w, SignRule rule, bool n
 }
 
 Start greedy_start(const BlockSource<double>& X, const SupportFunction& support,
-                   const DecompositionOptions& options, const Reduction& reduction) {
+                   const DecompositionOptions& options, const Context& context) {
+  const Reduction reduction(X.part().mesh_vertices(), context);
   Residual residual(X, options, reduction);
   for (int k = 0; k < options.count; ++k) {
-    report_progress(options.progress, static_cast<double>(k) / options.count);
+    context.report(static_cast<double>(k) / options.count);
     const VertexIndex center = residual.strongest();
     if (center < 0) break;
     const Eigen::VectorXd w = reduction.on(X.part().owner(center), [&] {

@@ -17,11 +17,11 @@ struct Start {
 
 /// Greedy start, options.count times: the vertex that the earlier components explain least (as
 /// options.parts weighs it), the strongest direction of its residual, and what its weights explain
-/// around it. X is F x 3n; `reduction` over the same part.
+/// around it. X is F x 3n, this rank's part of the mesh. Throws Cancelled.
 ///
 /// [Neumann et al. Sparse Localized Deformation Components. ACM TOG 32(6), 2013], section 4.2
 Start greedy_start(const BlockSource<double>& X, const SupportFunction& support,
-                   const DecompositionOptions& options, const Reduction& reduction);
+                   const DecompositionOptions& options, const Context& = {});
 
 /// Feasible weights of a start from `w` (F) or from -w, whichever `rule` prefers.
 Eigen::VectorXd oriented_weights(const Eigen::VectorXd& w, SignRule rule, bool nonnegative);

@@ -141,22 +141,23 @@ Eigen::MatrixXd SurfaceDistances::State::computed(std::span<const VertexIndex> s
   const int group = geodesics.group;
   const auto count = static_cast<int>(sources.size());
   Eigen::MatrixXd found(static_cast<Eigen::Index>(weld.representative.size()), count);
-  parallel_for((count + group - 1) / group, threads, [&](int i) {
+  const auto compute_group = [&](int i) {
     const int first = i * group, size = std::min(group, count - first);
     // Every vertex takes the distance of the one that stands for it.
     found.middleCols(first, size) =
         geodesics.distances(sources.subspan(first, size))(weld.representative, Eigen::all);
-  });
+  };
+  parallel_for((count + group - 1) / group, compute_group, Context().with_threads(threads));
   return found;
 }
 
 SurfaceDistances::SurfaceDistances(const Positions& positions, const Triangles& triangles,
-                                   const Weld& weld, GeodesicMethod method, int threads,
-                                   std::size_t kept_bytes)
+                                   const Weld& weld, GeodesicMethod method, std::size_t kept_bytes,
+                                   const Context& context)
     : state_(std::make_shared<State>(kept_bytes)) {
   check_size(positions, weld);
   state_->weld = weld;
-  state_->threads = threads;
+  state_->threads = context.threads();
   state_->geodesics = prepared(positions, welded(triangles, weld), method);
   // The others of a welded group lose their triangles to the one that stands for them.
   auto& faceless = state_->geodesics.vertices_without_face;

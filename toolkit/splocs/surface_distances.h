@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "geodesic/heat_geodesics.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/weld.h"
 
 namespace mimetra {
@@ -40,11 +41,13 @@ class SurfaceDistances {
   /// What is kept at most, in bytes: all sources of a face, 61 of a million vertices.
   static constexpr std::size_t kKeptBytes = std::size_t{1} << 29;
 
-  /// Keeps no reference to the mesh; `threads` 0 for all there are. Throws std::invalid_argument as
-  /// HeatGeodesics does.
+  /// Keeps no reference to the mesh. Queries take as many threads as the context has; nothing else
+  /// of it is kept. Throws std::invalid_argument as HeatGeodesics does.
   SurfaceDistances(const Positions& positions, const Triangles& triangles, const Weld& weld,
-                   GeodesicMethod method = GeodesicMethod::heat, int threads = 0,
-                   std::size_t kept_bytes = kKeptBytes);
+                   GeodesicMethod method = GeodesicMethod::heat, const Context& context = {})
+      : SurfaceDistances(positions, triangles, weld, method, kKeptBytes, context) {}
+  SurfaceDistances(const Positions& positions, const Triangles& triangles, const Weld& weld,
+                   GeodesicMethod method, std::size_t kept_bytes, const Context& context = {});
 
   /// Distances from each of `sources` (N x S). What is not known yet is computed for several of
   /// them at once. Safe to call from several threads. Throws std::out_of_range.

@@ -8,6 +8,7 @@
 #include <Eigen/QR>
 
 #include "toolkit/mesh/parallel.h"
+#include "toolkit/splocs/reduction.h"
 
 namespace mimetra {
 namespace {
@@ -43,7 +44,7 @@ Eigen::MatrixXd random_signs(Eigen::Index first, Eigen::Index vertices, Eigen::I
 
 /// `poses` random mixtures of the vertices' motions, orthonormalised (F x poses).
 Eigen::MatrixXd sketched_basis(const BlockSource<double>& X, Eigen::Index poses,
-                               const Reduction& reduction, const Progress& progress) {
+                               const Reduction& reduction, const Context& context) {
   const VertexPart& part = reduction.part();
   const auto of_run = [&](int run, Eigen::MatrixXd& sum) {
     const IndexRange blocks = part.blocks_of(run);
@@ -51,7 +52,7 @@ Eigen::MatrixXd sketched_basis(const BlockSource<double>& X, Eigen::Index poses,
       sum.noalias() += *X.block(b) * random_signs(part.first() + X.first(b), X.size(b), poses);
     }
   };
-  const Eigen::MatrixXd sketch = reduction.sum(X.rows(), poses, of_run, progress);
+  const Eigen::MatrixXd sketch = context.sum(part.mesh_runs(), X.rows(), poses, of_run);
   return reduction.on_first([&]() -> Eigen::MatrixXd {
     const Eigen::HouseholderQR<Eigen::MatrixXd> qr(sketch);
     return qr.householderQ() * Eigen::MatrixXd::Identity(X.rows(), poses);
@@ -59,10 +60,10 @@ Eigen::MatrixXd sketched_basis(const BlockSource<double>& X, Eigen::Index poses,
 }
 
 VertexBlocks<double> coordinates(const Eigen::MatrixXd& Q, const BlockSource<double>& X,
-                                 int threads, const Progress& progress = {}) {
+                                 const Context& context) {
   VertexBlocks<double> B(Q.cols(), X.part());
   parallel_for(
-      X.count(), threads, [&](int b) { B[b] = Q.transpose() * *X.block(b); }, progress);
+      X.count(), [&](int b) { B[b] = Q.transpose() * *X.block(b); }, context);
   return B;
 }
 
@@ -84,18 +85,16 @@ Eigen::MatrixXd directions_of(const VertexBlocks<double>& B, const Reduction& re
 }  // namespace
 
 std::optional<TimeBasis> time_basis(const BlockSource<double>& X, double norm2, double tolerance,
-                                    const Reduction& reduction, Eigen::Index most,
-                                    const Progress& progress) {
+                                    Eigen::Index most, const Context& context) {
+  const Reduction reduction(X.part().mesh_vertices(), context);
   const Eigen::Index worth = X.rows() / 2;
   for (Eigen::Index poses = std::min(kFirstSketch, worth), tried = 0;
        poses > tried && poses <= most; tried = poses, poses = std::min(2 * poses, worth)) {
     const double from = static_cast<double>(tried) / static_cast<double>(worth),
                  to = static_cast<double>(poses) / static_cast<double>(worth),
                  between = (from + to) / 2;
-    const Eigen::MatrixXd sketch =
-        sketched_basis(X, poses, reduction, part_of(progress, from, between));
-    const VertexBlocks<double> B =
-        coordinates(sketch, X, reduction.threads(), part_of(progress, between, to));
+    const Eigen::MatrixXd sketch = sketched_basis(X, poses, reduction, context.part(from, between));
+    const VertexBlocks<double> B = coordinates(sketch, X, context.part(between, to));
     const Eigen::MatrixXd directions = directions_of(B, reduction);
     const Eigen::VectorXd energies = directions.row(0);
     double lost = norm2 - energies.sum();
@@ -106,7 +105,7 @@ std::optional<TimeBasis> time_basis(const BlockSource<double>& X, double norm2, 
       lost += energies[dropped++];
     }
     const Eigen::MatrixXd kept = directions.bottomRightCorner(poses, poses - dropped);
-    return TimeBasis{sketch * kept, coordinates(kept, B, reduction.threads())};
+    return TimeBasis{sketch * kept, coordinates(kept, B, context.part(to, to))};
   }
   return std::nullopt;
 }

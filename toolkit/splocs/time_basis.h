@@ -1,10 +1,8 @@
 #pragma once
 
-#include <limits>
 #include <optional>
 
-#include "toolkit/mesh/progress.h"
-#include "toolkit/splocs/reduction.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/splocs/vertex_blocks.h"
 
 namespace mimetra {
@@ -19,15 +17,13 @@ struct TimeBasis {
 constexpr double kLeastBasisTolerance = 1e-6;
 
 /// A basis with ||X - Q B||_F <= tolerance ||X||_F, found by random projections with a fixed seed;
-/// nothing where it would need more than half as many poses as X has frames, or would be looked for
-/// among more than `most` of them. A basis that is found does not depend on `most`.
+/// none if it needs more than half as many poses as X has frames, or a search among more than
+/// `most` poses. A basis that is found does not depend on `most`.
 /// `norm2` is ||X||_F^2. Throws Cancelled.
 /// \pre tolerance >= kLeastBasisTolerance
 ///
 /// [Halko, Martinsson, Tropp. Finding Structure with Randomness. SIAM Review 53(2), 2011]
 std::optional<TimeBasis> time_basis(const BlockSource<double>& X, double norm2, double tolerance,
-                                    const Reduction& reduction,
-                                    Eigen::Index most = std::numeric_limits<Eigen::Index>::max(),
-                                    const Progress& progress = {});
+                                    Eigen::Index most, const Context& = {});
 
 }  // namespace mimetra

@@ -1,27 +1,10 @@
 #include "toolkit/splocs/vertex_part.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <stdexcept>
 #include <string>
 
 namespace mimetra {
-namespace {
-
-/// `things` are dealt out to `owners` in order: thing t goes to owner t owners / things, rounded
-/// down. Then owner o has these.
-IndexRange dealt_to(int owner, int owners, int things) {
-  const auto first = [&](std::int64_t o) {
-    return static_cast<int>((o * things + owners - 1) / owners);
-  };
-  return {first(owner), first(std::int64_t{owner} + 1)};
-}
-
-int owner_of(int thing, int owners, int things) {
-  return static_cast<int>(std::int64_t{thing} * owners / things);
-}
-
-}  // namespace
 
 VertexPart::VertexPart(Eigen::Index mesh_vertices, int rank, int ranks)
     : mesh_vertices_(mesh_vertices), rank_(rank), ranks_(ranks) {
@@ -44,13 +27,9 @@ IndexRange VertexPart::blocks_of(int run) const {
   return {blocks.first - blocks_.first, blocks.end - blocks_.first};
 }
 
-int VertexPart::owner_of_run(int run) const {
-  return owner_of(run, ranks_, mesh_runs_);
-}
-
 int VertexPart::owner(VertexIndex vertex) const {
   const int block = static_cast<int>(vertex / kBlock);
-  return owner_of_run(owner_of(block, mesh_runs_, mesh_blocks()));
+  return owner_of(owner_of(block, mesh_runs_, mesh_blocks()), ranks_, mesh_runs_);
 }
 
 int VertexPart::mesh_blocks() const {

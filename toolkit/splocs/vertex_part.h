@@ -2,18 +2,10 @@
 
 #include <algorithm>
 
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/frame_source.h"
 
 namespace mimetra {
-
-/// Numbers first .. end - 1.
-struct IndexRange {
-  int first = 0;
-  int end = 0;
-
-  int count() const { return end - first; }
-  bool holds(const IndexRange& other) const { return first <= other.first && other.end <= end; }
-};
 
 /// Which vertices of a mesh one of several ranks works on.
 ///
@@ -50,8 +42,6 @@ class VertexPart {
 
   /// Blocks of one of the own runs, counted from the first own block.
   IndexRange blocks_of(int run) const;
-  /// Rank that owns a run of the mesh.
-  int owner_of_run(int run) const;
   /// Rank that owns a vertex of the mesh.
   int owner(VertexIndex vertex) const;
 

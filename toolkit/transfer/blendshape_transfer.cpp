@@ -150,19 +150,24 @@ void BlendshapeTransfer::State::smooth(const FrameSource& performance, const Eig
 
 BlendshapeTransfer::BlendshapeTransfer(const Positions& source_rest, const BlendshapeModel& target,
                                        std::vector<int> triangles,
-                                       const BlendshapeTransferOptions& options) {
+                                       const BlendshapeTransferOptions& options,
+                                       const Context& context) {
   check(source_rest, target, options);
   fix_product_blocking();
+  context.report(0);
   state_ = std::make_unique<State>(source_rest, target, std::move(triangles), options);
+  context.report(0.5);
   state_->judge(target);
   state_->set_up(target.expressions().names);
+  context.report(1);
 }
 
 BlendshapeTransfer::~BlendshapeTransfer() = default;
 BlendshapeTransfer::BlendshapeTransfer(BlendshapeTransfer&&) noexcept = default;
 BlendshapeTransfer& BlendshapeTransfer::operator=(BlendshapeTransfer&&) noexcept = default;
 
-Eigen::MatrixXd BlendshapeTransfer::weights(const FrameSource& performance) const {
+Eigen::MatrixXd BlendshapeTransfer::weights(const FrameSource& performance,
+                                            const Context& context) const {
   const State& state = *state_;
   state.check_size(performance);
   fix_product_blocking();
@@ -189,9 +194,7 @@ Eigen::MatrixXd BlendshapeTransfer::weights(const FrameSource& performance) cons
     beta.middleRows(first, solved.rows()) = solved.leftCols(unknowns);
     if (smooths) h.middleRows(first, solved.rows()) = solved.rightCols(unknowns);
   };
-  for_each_dealt(frames, kFramesPerBlock, columns,
-                 {state.options.threads, state.options.progress, state.options.ranks}, solve_block,
-                 take);
+  context.for_each_block(frames, kFramesPerBlock, columns, solve_block, take);
   if (smooths) state.smooth(performance, h, beta);
   return state.rules.written(beta);
 }
@@ -217,7 +220,8 @@ const BlendshapeConditions& BlendshapeTransfer::conditions() const {
 }
 
 bool BlendshapeTransfer::rest_looks_unneutral(const FrameSource& performance,
-                                              const Eigen::MatrixXd& weights) const {
+                                              const Eigen::MatrixXd& weights,
+                                              const Context& context) const {
   const State& state = *state_;
   state.check_size(performance);
   fix_product_blocking();
@@ -230,20 +234,19 @@ bool BlendshapeTransfer::rest_looks_unneutral(const FrameSource& performance,
   std::erase_if(counted, [&state](Eigen::Index j) { return state.solver->rules().lower[j] != 0; });
   const int frames = performance.frames();
   Eigen::VectorXd below(frames);
-  for_each_dealt(
-      frames, kFramesPerBlock, 1, {.threads = state.options.threads, .ranks = state.options.ranks},
-      [&](int first, int count) {
-        const auto beta = solved.middleRows(first, count);
-        const FrameBlock block(performance, first, count);
-        const Eigen::MatrixXd pull = state.right_hand_side(block.poses()) - beta * state.gram;
-        FrameRows found = FrameRows::Zero(count, 1);
-        for (const Eigen::Index j : counted) {
-          found.array() +=
-              (beta.col(j).array() == 0 && pull.col(j).array() < kWantedStep * diagonal[j])
-                  .cast<double>();
-        }
-        return found;
-      },
+  const auto count_below = [&](int first, int count) {
+    const auto beta = solved.middleRows(first, count);
+    const FrameBlock block(performance, first, count);
+    const Eigen::MatrixXd pull = state.right_hand_side(block.poses()) - beta * state.gram;
+    FrameRows found = FrameRows::Zero(count, 1);
+    for (const Eigen::Index j : counted) {
+      found.array() += (beta.col(j).array() == 0 && pull.col(j).array() < kWantedStep * diagonal[j])
+                           .cast<double>();
+    }
+    return found;
+  };
+  context.for_each_block(
+      frames, kFramesPerBlock, 1, count_below,
       [&](int first, const FrameRows& found) { below.segment(first, found.rows()) = found; });
   const double wanted = below.sum(), all = static_cast<double>(frames * counted.size());
   return wanted > kUnneutralShare * all;

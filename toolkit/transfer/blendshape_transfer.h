@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "toolkit/correspondence/pairing.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/option.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/model/blendshape_model.h"
 #include "toolkit/model/weight_rules.h"
 #include "toolkit/transfer/edges.h"
@@ -36,13 +36,8 @@ struct BlendshapeTransferOptions {
   std::shared_ptr<const Pairing> pairing = {};
   /// How often the square of each triangle counts (M), >= 0; empty for once.
   Eigen::VectorXd triangle_weights = {};
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  /// Of weights().
-  Progress progress = {};
-  /// Processes that frames are dealt out to, as in BlockOptions.
-  const Ranks* ranks = nullptr;
 
+  static constexpr Option kEdges{"edges", &BlendshapeTransferOptions::edges};
   static constexpr Option kRidge{"ridge", &BlendshapeTransferOptions::ridge, {.minimum = 0}};
   static constexpr Option kSparsity{
       "sparsity", &BlendshapeTransferOptions::sparsity, {.minimum = 0}};
@@ -52,7 +47,7 @@ struct BlendshapeTransferOptions {
       "symmetry", &BlendshapeTransferOptions::symmetry, {.minimum = 0}};
   static constexpr Option kExclusive{"exclusive", &BlendshapeTransferOptions::exclusive};
   static constexpr auto declared() {
-    return std::tuple(kRidge, kSparsity, kSmoothness, kSymmetry, kExclusive);
+    return std::tuple(kEdges, kRidge, kSparsity, kSmoothness, kSymmetry, kExclusive);
   }
 };
 
@@ -82,20 +77,21 @@ struct BlendshapeConditions {
 /// Queries are const.
 class BlendshapeTransfer {
  public:
-  /// `source_rest` N x 3 has the target's connectivity, or is that of the pairing; `triangles` are
-  /// rows of target.triangles(). Throws MismatchError where the vertex counts differ or the target
-  /// has no expression that moves in `triangles`, for rules that do not fit the target
-  /// (ExpressionRules) and for a sparsity of weights that may be negative by rule,
-  /// std::invalid_argument for a triangle or an option out of range, weights of triangles too.
+  /// `source_rest` N x 3 has the connectivity of the target, or of the pairing's source;
+  /// `triangles` are rows of target.triangles(). Throws MismatchError if the vertex counts differ,
+  /// if no expression of the target moves in `triangles`, if the rules do not fit the target
+  /// (ExpressionRules), and for a sparsity of weights that may be negative by rule;
+  /// std::invalid_argument for a triangle, an option or a triangle weight out of range; Cancelled.
   BlendshapeTransfer(const Positions& source_rest, const BlendshapeModel& target,
-                     std::vector<int> triangles, const BlendshapeTransferOptions& = {});
+                     std::vector<int> triangles, const BlendshapeTransferOptions& options = {},
+                     const Context& context = {});
   ~BlendshapeTransfer();
   BlendshapeTransfer(BlendshapeTransfer&&) noexcept;
   BlendshapeTransfer& operator=(BlendshapeTransfer&&) noexcept;
 
   /// beta for every frame (F x D), each within [0, 1]; with rules, the weights to write. Throws
   /// MismatchError, Cancelled, and what reading throws, as does rest_looks_unneutral().
-  Eigen::MatrixXd weights(const FrameSource& performance) const;
+  Eigen::MatrixXd weights(const FrameSource& performance, const Context& context = {}) const;
 
   /// A^T A of eq. 11 over L (D x D).
   const Eigen::MatrixXd& gram() const;
@@ -106,7 +102,8 @@ class BlendshapeTransfer {
   /// True where many weights sit at 0 with a multiplier that wants them negative: the source's rest
   /// pose is likely not neutral. `weights` as returned for `performance`. Expressions whose rule
   /// has beta not begin at 0 do not count.
-  bool rest_looks_unneutral(const FrameSource& performance, const Eigen::MatrixXd& weights) const;
+  bool rest_looks_unneutral(const FrameSource& performance, const Eigen::MatrixXd& weights,
+                            const Context& context = {}) const;
 
  private:
   struct State;

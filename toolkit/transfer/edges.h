@@ -1,6 +1,7 @@
 #pragma once
 
 #include <numbers>
+#include <string_view>
 
 #include "toolkit/mesh/tri_mesh.h"
 
@@ -23,6 +24,16 @@ enum class EdgeSum {
   all,  ///< all three, times 2/3: the mean over the corners that a triangle can be written from
   two   ///< b - a and c - a: the paper's, which depends on the corner that is written first
 };
+
+constexpr std::string_view choice_name(EdgeSum value) {
+  switch (value) {
+    case EdgeSum::all:
+      return "all";
+    case EdgeSum::two:
+      return "two";
+  }
+  return {};
+}
 
 /// The 2 x 2 matrix G by which the sum of squares of a change D of the edges is tr(D G D^T).
 inline Eigen::Matrix2d edge_product(EdgeSum sum) {

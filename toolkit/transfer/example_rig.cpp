@@ -87,10 +87,11 @@ void check(const BlendshapeModel& transferred, const std::vector<RigExample>& ex
 class ExampleFit {
  public:
   ExampleFit(const BlendshapeModel& transferred, const std::vector<RigExample>& examples,
-             const Weld& weld, const ExampleRigOptions& options)
+             const Weld& weld, const ExampleRigOptions& options, const Context& context)
       : model_(transferred),
         examples_(examples),
         options_(options),
+        context_(context),
         gradients_(transferred.neutral(), transferred.triangles(), weld),
         size_(box_diagonal(transferred.neutral())),
         poses_(transferred.neutral().size(), static_cast<Eigen::Index>(examples.size())) {
@@ -115,11 +116,12 @@ class ExampleFit {
 
   Eigen::MatrixXd first_weights() const;
   Eigen::VectorXd weights_of(std::size_t example, const Eigen::MatrixXd& displacements) const;
-  Eigen::MatrixXd fitted(const Eigen::MatrixXd& weights, double strength) const;
+  Eigen::MatrixXd fitted(const Eigen::MatrixXd& weights, double strength,
+                         const Context& context) const;
   Eigen::MatrixXd correction(const Eigen::MatrixXd& before, const Eigen::MatrixXd& left,
                              const Eigen::MatrixXd& weights, double strength) const;
   Eigen::MatrixXd corrections(const Eigen::MatrixXd& left, const Eigen::MatrixXd& weights,
-                              double strength) const;
+                              double strength, const Context& context) const;
   Shifts shifts(const Eigen::MatrixXd& left, const Eigen::MatrixXd& weights, double strength) const;
   std::vector<bool> fixed(int expression, const Eigen::MatrixXd& left,
                           const Eigen::MatrixXd& weights) const;
@@ -129,6 +131,7 @@ class ExampleFit {
   const BlendshapeModel& model_;
   const std::vector<RigExample>& examples_;
   const ExampleRigOptions& options_;
+  const Context& context_;
   PlaneGradients gradients_;
   double size_;
   Eigen::MatrixXd poses_;  // displacements of the examples, 3N x S
@@ -184,7 +187,7 @@ Eigen::MatrixXd ExampleFit::correction(const Eigen::MatrixXd& before, const Eige
 
 /// Of every triangle: 6M x D.
 Eigen::MatrixXd ExampleFit::corrections(const Eigen::MatrixXd& left, const Eigen::MatrixXd& weights,
-                                        double strength) const {
+                                        double strength, const Context& context) const {
   constexpr int kNumbers = PlaneGradients::kNumbers;
   const int triangles = gradients_.triangles();
   Eigen::MatrixXd result =
@@ -197,7 +200,7 @@ Eigen::MatrixXd ExampleFit::corrections(const Eigen::MatrixXd& left, const Eigen
           correction(gradients_.at(t, prior()), gradients_.at(t, left), weights, strength);
     }
   };
-  parallel_for((triangles + kTrianglesAtOnce - 1) / kTrianglesAtOnce, options_.threads, fit_block);
+  parallel_for((triangles + kTrianglesAtOnce - 1) / kTrianglesAtOnce, fit_block, context);
   return result;
 }
 
@@ -257,9 +260,10 @@ void ExampleFit::add_shifts(Eigen::VectorXd& field, const std::vector<FloatingPi
 }
 
 /// The expressions (3N x D) of these weights (S x D).
-Eigen::MatrixXd ExampleFit::fitted(const Eigen::MatrixXd& weights, double strength) const {
+Eigen::MatrixXd ExampleFit::fitted(const Eigen::MatrixXd& weights, double strength,
+                                   const Context& context) const {
   const Eigen::MatrixXd left = poses_ - prior() * weights.transpose();
-  const Eigen::MatrixXd gradients = corrections(left, weights, strength);
+  const Eigen::MatrixXd gradients = corrections(left, weights, strength, context);
   const auto of_piece = shifts(left, weights, strength);
   Eigen::MatrixXd result = prior();
   std::vector<bool> is_given(static_cast<std::size_t>(result.cols()), false);
@@ -269,7 +273,7 @@ Eigen::MatrixXd ExampleFit::fitted(const Eigen::MatrixXd& weights, double streng
     is_given[*expression] = true;
     result.col(*expression) = poses_.col(static_cast<Eigen::Index>(s));
   }
-  parallel_for(static_cast<int>(result.cols()), options_.threads, [&](int j) {
+  const auto follow = [&](int j) {
     if (is_given[j]) return;
     const auto differs = [j](const auto& shift) { return !shift.second.col(j).isZero(0); };
     if (gradients.col(j).isZero(0) && std::ranges::none_of(of_piece, differs)) return;
@@ -277,19 +281,23 @@ Eigen::MatrixXd ExampleFit::fitted(const Eigen::MatrixXd& weights, double streng
     Eigen::VectorXd field = gradients_.field_of(gradients.col(j), unknowns);
     add_shifts(field, unknowns.floating, of_piece, j);
     result.col(j) += field;
-  });
+  };
+  parallel_for(static_cast<int>(result.cols()), follow, context);
   return result;
 }
 
 ExampleRig ExampleFit::solve() const {
   ExampleRig rig{{}, first_weights()};
   bool is_open = false;
+  double reported = 0;
   for (std::size_t s = 0; s < examples_.size(); ++s) is_open |= looks_for_weights(s);
   for (int round = 0; is_open && round < options_.rounds; ++round) {
-    report_progress(options_.progress, static_cast<double>(round) / (options_.rounds + 1));
+    reported = static_cast<double>(round) / (options_.rounds + 1);
+    context_.report(reported);
     const double done = static_cast<double>(round) / options_.rounds;
     rig.displacements =
-        fitted(rig.weights, options_.prior * (kFirstPrior + (1 - kFirstPrior) * done));
+        fitted(rig.weights, options_.prior * (kFirstPrior + (1 - kFirstPrior) * done),
+               context_.part(reported, reported));
     double change = 0;
     for (std::size_t s = 0; s < examples_.size(); ++s) {
       if (!looks_for_weights(s)) continue;
@@ -300,8 +308,8 @@ ExampleRig ExampleFit::solve() const {
     }
     if (change < kSettled) break;
   }
-  rig.displacements = fitted(rig.weights, options_.prior);
-  report_progress(options_.progress, 1);
+  rig.displacements = fitted(rig.weights, options_.prior, context_.part(reported, reported));
+  context_.report(1);
   return rig;
 }
 
@@ -309,7 +317,7 @@ ExampleRig ExampleFit::solve() const {
 
 ExampleRig fit_to_examples(const BlendshapeModel& transferred,
                            const std::vector<RigExample>& examples, const Weld& weld,
-                           const ExampleRigOptions& options) {
+                           const ExampleRigOptions& options, const Context& context) {
   fix_product_blocking();
   check(transferred, examples, weld, options);
   if (examples.empty() || transferred.expressions().size() == 0) {
@@ -317,7 +325,7 @@ ExampleRig fit_to_examples(const BlendshapeModel& transferred,
             Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(examples.size()),
                                   transferred.expressions().size())};
   }
-  return ExampleFit(transferred, examples, weld, options).solve();
+  return ExampleFit(transferred, examples, weld, options, context).solve();
 }
 
 }  // namespace mimetra

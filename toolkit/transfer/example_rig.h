@@ -4,8 +4,8 @@
 #include <variant>
 #include <vector>
 
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/option.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/weld.h"
 #include "toolkit/model/blendshape_model.h"
 
@@ -35,9 +35,6 @@ struct ExampleRigOptions {
   double share = 1;
   /// Rounds of expressions from weights and weights from expressions, where weights are looked for.
   int rounds = 10;
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  Progress progress = {};
 
   static constexpr Option kPrior{"prior", &ExampleRigOptions::prior, {.minimum = 1e-6}};
   static constexpr Option kKappa{
@@ -73,6 +70,6 @@ struct ExampleRig {
 /// [Li, Weise, Pauly. Example-Based Facial Rigging. ACM TOG 29(4), 2010]
 ExampleRig fit_to_examples(const BlendshapeModel& transferred,
                            const std::vector<RigExample>& examples, const Weld& weld,
-                           const ExampleRigOptions& options = {});
+                           const ExampleRigOptions& options = {}, const Context& context = {});
 
 }  // namespace mimetra

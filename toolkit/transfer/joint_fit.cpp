@@ -59,7 +59,8 @@ double product(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
 }  // namespace
 
 JointFit::JointFit(const Positions& source_rest, const BlendshapeModel& target,
-                   std::vector<int> triangles, const JointFitOptions& options)
+                   std::vector<int> triangles, const JointFitOptions& options,
+                   const Context& context)
     : rest_(checked(source_rest, target, options)),
       gradients_(gradients_between(rest_, target.triangles(), options.pairing.get(),
                                    with_partners(std::move(triangles), options.pairing.get()))),
@@ -67,6 +68,7 @@ JointFit::JointFit(const Positions& source_rest, const BlendshapeModel& target,
       moments_(rest_, gradients_, target, options.edges),
       vertices_(vertices_of(target.triangles(), gradients_.selected())),
       options_(options) {
+  context.report(0.5);
   const Eigen::VectorXd full =
       gram_diagonal(target, all_triangles(target.triangles()), options.edges);
   upper_ = Eigen::VectorXd::Zero(gram_.rows());
@@ -77,6 +79,7 @@ JointFit::JointFit(const Positions& source_rest, const BlendshapeModel& target,
     const double* field = target.expressions().displacements.col(j).data();
     mean_fields_.col(j) = mean_of_rows(PositionsView(field, target.vertices(), 3), vertices_);
   }
+  context.report(1);
 }
 
 /// Of the triangles' vertices, or of what carries them.
@@ -128,7 +131,8 @@ JointFit::Head JointFit::solve(const RotationMoments::Moments& moments,
 }
 
 HeadAndExpressions JointFit::operator()(const FrameSource& performance,
-                                        const std::vector<RigidTransform>& start) const {
+                                        const std::vector<RigidTransform>& start,
+                                        const Context& context) const {
   check_vertices(performance.vertices(), rest_.rows());
   const int frames = performance.frames();
   if (static_cast<int>(start.size()) != frames) {
@@ -138,25 +142,24 @@ HeadAndExpressions JointFit::operator()(const FrameSource& performance,
   fix_product_blocking();
   HeadAndExpressions found{start, Eigen::MatrixXd::Zero(frames, upper_.size())};
   constexpr int kBlock = RotationMoments::kLanes;
-  parallel_for((frames + kBlock - 1) / kBlock, options_.threads,
-               [&](int number) {
-                 const int first = number * kBlock;
-                 const FrameBlock block(performance, first, std::min(kBlock, frames - first));
-                 const std::vector<RotationMoments::Moments> moments = moments_(block.poses());
-                 for (int row = 0; row < block.frames(); ++row) {
-                   RigidTransform& motion = found.motion[first + row];
-                   if (block.frame(row) == rest_) {
-                     motion = {};
-                     continue;
-                   }
-                   const Head head = solve(moments[row], motion.rotation);
-                   found.weights.row(first + row) = head.beta.transpose();
-                   if (options_.iterations == 0) continue;
-                   const Eigen::Vector3d predicted = rest_mean_ + mean_fields_ * head.beta;
-                   motion = {head.rotation, mean_of(block.frame(row)) - head.rotation * predicted};
-                 }
-               },
-               options_.progress);
+  const auto fit_block = [&](int number) {
+    const int first = number * kBlock;
+    const FrameBlock block(performance, first, std::min(kBlock, frames - first));
+    const std::vector<RotationMoments::Moments> moments = moments_(block.poses());
+    for (int row = 0; row < block.frames(); ++row) {
+      RigidTransform& motion = found.motion[first + row];
+      if (block.frame(row) == rest_) {
+        motion = {};
+        continue;
+      }
+      const Head head = solve(moments[row], motion.rotation);
+      found.weights.row(first + row) = head.beta.transpose();
+      if (options_.iterations == 0) continue;
+      const Eigen::Vector3d predicted = rest_mean_ + mean_fields_ * head.beta;
+      motion = {head.rotation, mean_of(block.frame(row)) - head.rotation * predicted};
+    }
+  };
+  parallel_for((frames + kBlock - 1) / kBlock, fit_block, context);
   return found;
 }
 

@@ -5,6 +5,7 @@
 
 #include "toolkit/correspondence/pairing.h"
 #include "toolkit/mesh/alignment.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/model/blendshape_model.h"
 #include "toolkit/transfer/deformation_gradients.h"
 #include "toolkit/transfer/right_hand_side.h"
@@ -17,12 +18,10 @@ struct JointFitOptions {
   int iterations = 100;
   /// Of source and target where their faces differ, or null.
   std::shared_ptr<const Pairing> pairing = {};
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  Progress progress = {};
 
+  static constexpr Option kEdges{"edges", &JointFitOptions::edges};
   static constexpr Option kIterations{"iterations", &JointFitOptions::iterations, {.minimum = 0}};
-  static constexpr auto declared() { return std::tuple(kIterations); }
+  static constexpr auto declared() { return std::tuple(kEdges, kIterations); }
 };
 
 /// The head's motion and the expressions of each frame.
@@ -41,15 +40,16 @@ struct HeadAndExpressions {
 /// rest pose and the displacements of beta to the frame's. Queries are const.
 class JointFit {
  public:
-  /// As BlendshapeTransfer, whose source stands where the target does. Throws MismatchError where
-  /// the vertex counts differ, std::invalid_argument for triangles or options out of range.
+  /// As BlendshapeTransfer, whose source stands where the target does. Throws MismatchError if the
+  /// vertex counts differ, std::invalid_argument for triangles or options out of range, Cancelled.
   JointFit(const Positions& source_rest, const BlendshapeModel& target, std::vector<int> triangles,
-           const JointFitOptions& = {});
+           const JointFitOptions& options = {}, const Context& context = {});
 
   /// `start` (F): what is known of the motion. A frame that is the rest pose keeps the identity and
   /// no expression. Throws MismatchError where sizes differ, Cancelled, and what reading throws.
   HeadAndExpressions operator()(const FrameSource& performance,
-                                const std::vector<RigidTransform>& start) const;
+                                const std::vector<RigidTransform>& start,
+                                const Context& context = {}) const;
 
  private:
   struct Head {

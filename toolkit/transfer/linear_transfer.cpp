@@ -51,6 +51,7 @@ Eigen::VectorXd pull_of(const Eigen::Ref<const Eigen::VectorXd>& field,
 
 void check_models(const BlendshapeModel& source, const BlendshapeModel& target,
                   const BlendshapeTransferOptions& options) {
+  check_options(options);
   check_sizes(source.neutral(), target.neutral(), options.pairing.get());
   if (source.expressions().size() == 0) throw MismatchError("the source has no expressions");
   if (target.expressions().size() == 0) throw MismatchError("the target has no expressions");
@@ -74,7 +75,8 @@ Eigen::Matrix3d triangle_frame_change(const Edges& edges, const Edges& change) {
 }
 
 Retargeting linear_transfer(const BlendshapeModel& source, const BlendshapeModel& target,
-                            std::vector<int> triangles, const BlendshapeTransferOptions& options) {
+                            std::vector<int> triangles, const BlendshapeTransferOptions& options,
+                            const Context& context) {
   check_models(source, target, options);
   fix_product_blocking();
   const DeformationGradients gradients =
@@ -83,9 +85,10 @@ Retargeting linear_transfer(const BlendshapeModel& source, const BlendshapeModel
   const Eigen::MatrixXd& fields = source.expressions().displacements;
   const Eigen::Matrix2d product = edge_product(options.edges);
   Eigen::MatrixXd pulls(3 * static_cast<Eigen::Index>(target.vertices()), fields.cols());
-  parallel_for(static_cast<int>(fields.cols()), options.threads, [&](int j) {
+  const auto pull = [&](int j) {
     pulls.col(j) = pull_of(fields.col(j), source, target, gradients, product);
-  });
+  };
+  parallel_for(static_cast<int>(fields.cols()), pull, context.part(0, 0.8));
   Retargeting map;
   map.source_names = source.expressions().names;
   map.target_names = target.expressions().names;
@@ -97,6 +100,7 @@ Retargeting linear_transfer(const BlendshapeModel& source, const BlendshapeModel
   for (Eigen::Index j = 0; j < map.upper.size(); ++j) {
     if (moves_there(map.gram(j, j), all[j])) map.upper[j] = 1;
   }
+  context.report(1);
   return map;
 }
 
@@ -112,7 +116,8 @@ void check_map(const Retargeting& map, const BlendshapeTransferOptions& options)
 }
 
 Eigen::MatrixXd retargeted(const Retargeting& map, const Eigen::MatrixXd& weights,
-                           const Eigen::VectorXd& times, const BlendshapeTransferOptions& options) {
+                           const Eigen::VectorXd& times, const BlendshapeTransferOptions& options,
+                           const Context& context) {
   check_map(map, options);
   if (weights.cols() != map.linear.cols()) {
     throw std::invalid_argument(std::to_string(weights.cols()) +
@@ -138,7 +143,7 @@ Eigen::MatrixXd retargeted(const Retargeting& map, const Eigen::MatrixXd& weight
       beta.row(f) = current.transpose();
     }
   };
-  parallel_for(blocks, options.threads, solve_block, options.progress);
+  parallel_for(blocks, solve_block, context);
   if (options.smoothness > 0) {
     const double mu = smoothness_penalty(options.smoothness, times, mean_diagonal);
     beta = smooth_weights(

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "toolkit/mesh/context.h"
 #include "toolkit/model/blendshape_model.h"
 #include "toolkit/model/retargeting.h"
 #include "toolkit/transfer/blendshape_transfer.h"
@@ -20,9 +21,11 @@ Eigen::Matrix3d triangle_frame_change(const Edges& edges, const Edges& change);
 /// `source` stands where the target is and has its connectivity, or is that of the pairing;
 /// `triangles` are rows of target.triangles(). Of the options, ridge, sparsity and smoothness are
 /// those of retargeted(). Throws MismatchError where one of the models has no expression, or the
-/// vertex counts differ; std::invalid_argument for a triangle out of range.
+/// vertex counts differ; std::invalid_argument for a triangle or an option out of range; Cancelled.
 Retargeting linear_transfer(const BlendshapeModel& source, const BlendshapeModel& target,
-                            std::vector<int> triangles, const BlendshapeTransferOptions& = {});
+                            std::vector<int> triangles,
+                            const BlendshapeTransferOptions& options = {},
+                            const Context& context = {});
 
 /// Throws what retargeted() throws of a map and options: std::invalid_argument for a map that is
 /// none and for options out of range, MismatchError for sparsity of an expression that may be
@@ -32,8 +35,10 @@ void check_map(const Retargeting& map, const BlendshapeTransferOptions& options)
 /// beta for every frame (F x D_t), within the map's bounds, of the source's weights (F x D_s).
 /// Edges and pairing of the options are the map's already; `times` (F, seconds) matter to the
 /// smoothness only. Throws as check_map(), std::invalid_argument for sizes that disagree, and
-/// Cancelled. The result does not depend on the number of threads.
+/// Cancelled.
 Eigen::MatrixXd retargeted(const Retargeting& map, const Eigen::MatrixXd& weights,
-                           const Eigen::VectorXd& times, const BlendshapeTransferOptions& = {});
+                           const Eigen::VectorXd& times,
+                           const BlendshapeTransferOptions& options = {},
+                           const Context& context = {});
 
 }  // namespace mimetra

@@ -42,13 +42,13 @@ void check_performance(const FrameSource& performance, int vertices) {
 
 struct LocalWeights::State {
   State(const Positions& source_rest, const BlendshapeModel& given, const RegionShares& shares,
-        std::vector<int> selected, const LocalWeightsOptions& of_call)
+        std::vector<int> selected, const LocalWeightsOptions& of_call, const Context& context)
       : options(of_call),
         vertices(static_cast<int>(source_rest.rows())),
         expressions(given.expressions().size()),
         gradients(gradients_between(source_rest, given.triangles(), of_call.pairing.get(),
                                     with_partners(std::move(selected), of_call.pairing.get()))),
-        gram(regional_gram(given, shares, gradients.selected(), of_call.edges, of_call.threads)),
+        gram(regional_gram(given, shares, gradients.selected(), of_call.edges, context)),
         right_hand_side(source_rest, gradients, given, shares, of_call.edges) {}
 
   void set_up(const BlendshapeModel& target);
@@ -103,19 +103,21 @@ double LocalWeights::State::solve(const Eigen::VectorXd& h, const Eigen::VectorX
 
 LocalWeights::LocalWeights(const Positions& source_rest, const BlendshapeModel& target,
                            const RegionShares& shares, std::vector<int> triangles,
-                           const LocalWeightsOptions& options) {
+                           const LocalWeightsOptions& options, const Context& context) {
   check_regional(source_rest, target, shares, options);
   fix_product_blocking();
-  state_ = std::make_unique<State>(source_rest, target, shares, std::move(triangles), options);
+  state_ = std::make_unique<State>(source_rest, target, shares, std::move(triangles), options,
+                                   context.part(0, 0.9));
   state_->set_up(target);
+  context.report(1);
 }
 
 LocalWeights::~LocalWeights() = default;
 LocalWeights::LocalWeights(LocalWeights&&) noexcept = default;
 LocalWeights& LocalWeights::operator=(LocalWeights&&) noexcept = default;
 
-RegionalWeights LocalWeights::weights(const FrameSource& performance,
-                                      const Eigen::MatrixXd& global) const {
+RegionalWeights LocalWeights::weights(const FrameSource& performance, const Eigen::MatrixXd& global,
+                                      const Context& context) const {
   const State& state = *state_;
   check_performance(performance, state.vertices);
   if (global.rows() != performance.frames() || global.cols() != state.expressions) {
@@ -126,25 +128,23 @@ RegionalWeights LocalWeights::weights(const FrameSource& performance,
   const Eigen::Index unknowns = state.gram.rows();
   RegionalWeights result{Eigen::MatrixXd(frames, unknowns)};
   Eigen::VectorXd violations(frames);
-  for_each_dealt(
-      frames, kRegionalBlock, unknowns + 1,
-      {state.options.threads, state.options.progress, state.options.ranks},
-      [&](int first, int count) {
-        const FrameBlock block(performance, first, count);
-        const Eigen::MatrixXd h = state.right_hand_side(block.poses());
-        FrameRows solved(count, unknowns + 1);
-        Eigen::VectorXd current;
-        for (int row = 0; row < count; ++row) {
-          solved(row, unknowns) =
-              state.solve(h.row(row).transpose(), global.row(first + row).transpose(), current);
-          solved.row(row).head(unknowns) = current.transpose();
-        }
-        return solved;
-      },
-      [&](int first, const FrameRows& solved) {
-        result.beta.middleRows(first, solved.rows()) = solved.leftCols(unknowns);
-        violations.segment(first, solved.rows()) = solved.col(unknowns);
-      });
+  const auto solve_block = [&](int first, int count) {
+    const FrameBlock block(performance, first, count);
+    const Eigen::MatrixXd h = state.right_hand_side(block.poses());
+    FrameRows solved(count, unknowns + 1);
+    Eigen::VectorXd current;
+    for (int row = 0; row < count; ++row) {
+      solved(row, unknowns) =
+          state.solve(h.row(row).transpose(), global.row(first + row).transpose(), current);
+      solved.row(row).head(unknowns) = current.transpose();
+    }
+    return solved;
+  };
+  const auto take = [&](int first, const FrameRows& solved) {
+    result.beta.middleRows(first, solved.rows()) = solved.leftCols(unknowns);
+    violations.segment(first, solved.rows()) = solved.col(unknowns);
+  };
+  context.for_each_block(frames, kRegionalBlock, unknowns + 1, solve_block, take);
   if (frames > 0) result.violation = violations.maxCoeff();
   return result;
 }

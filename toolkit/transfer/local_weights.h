@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "toolkit/correspondence/pairing.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/option.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/model/regional_animation.h"
 #include "toolkit/transfer/edges.h"
 
@@ -18,15 +18,11 @@ struct LocalWeightsOptions {
   EdgeSum edges = EdgeSum::all;
   /// Of source and target where their faces differ, or null.
   std::shared_ptr<const Pairing> pairing = {};
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  Progress progress = {};
-  /// Processes that frames are dealt out to, as in BlockOptions.
-  const Ranks* ranks = nullptr;
 
   /// Without it, what a region hardly sees is anything.
   static constexpr Option kRidge{"ridge", &LocalWeightsOptions::ridge, {.minimum = 1e-6}};
-  static constexpr auto declared() { return std::tuple(kRidge); }
+  static constexpr Option kEdges{"edges", &LocalWeightsOptions::edges};
+  static constexpr auto declared() { return std::tuple(kRidge, kEdges); }
 };
 
 /// Weights of each region for every frame.
@@ -46,12 +42,12 @@ class LocalWeights {
  public:
   /// `source_rest` and `triangles` as in BlendshapeTransfer; `shares` N x R of the target's
   /// vertices, in each row adding up to 1. Keeps a reference to the target. Throws
-  /// MismatchError where the vertex counts differ or the target has no expressions,
+  /// MismatchError if the vertex counts differ or the target has no expressions,
   /// std::invalid_argument for a triangle or an option out of range and for shares of another
-  /// number of vertices.
+  /// number of vertices, Cancelled.
   LocalWeights(const Positions& source_rest, const BlendshapeModel& target,
                const RegionShares& shares, std::vector<int> triangles,
-               const LocalWeightsOptions& = {});
+               const LocalWeightsOptions& options = {}, const Context& context = {});
   ~LocalWeights();
   LocalWeights(LocalWeights&&) noexcept;
   LocalWeights& operator=(LocalWeights&&) noexcept;
@@ -59,7 +55,8 @@ class LocalWeights {
   /// `global` F x D within [0, 1] are the weights of the whole face: where an expression does not
   /// move in a region, that region has them. Throws MismatchError where sizes disagree, Cancelled,
   /// and what reading throws.
-  RegionalWeights weights(const FrameSource& performance, const Eigen::MatrixXd& global) const;
+  RegionalWeights weights(const FrameSource& performance, const Eigen::MatrixXd& global,
+                          const Context& context = {}) const;
 
   /// A^T A of the joint problem without its ridge (R D x R D): 0 between regions without a common
   /// triangle.

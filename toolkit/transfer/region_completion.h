@@ -23,7 +23,8 @@ struct CompletionOptions {
   static constexpr Option kShare{
       "share", &CompletionOptions::share, {.minimum = 0, .maximum = 0.95}};
   static constexpr Option kLimit{"limit", &CompletionOptions::limit, {.minimum = 0, .maximum = 1}};
-  static constexpr auto declared() { return std::tuple(kShare, kLimit); }
+  static constexpr Option kEdges{"edges", &CompletionOptions::edges};
+  static constexpr auto declared() { return std::tuple(kShare, kLimit, kEdges); }
 };
 
 struct CompletedRegions {

@@ -91,9 +91,9 @@ class RegionSelection::Greedy {
   int source_triangles() const { return static_cast<int>(is_chosen_.size()); }
 
   /// The disc of at most `room` new triangles that serves best, if any has one.
-  std::optional<int> best(int room) {
-    parallel_for(static_cast<int>(discs_.size()), selection_.options_.threads,
-                 [this, room](int d) { judge(d, room); });
+  std::optional<int> best(int room, const Context& context) {
+    parallel_for(
+        static_cast<int>(discs_.size()), [this, room](int d) { judge(d, room); }, context);
     std::optional<int> best;
     for (int d = 0; d < static_cast<int>(discs_.size()); ++d) {
       if (additions_[d].cost == 0 || additions_[d].cost > room) continue;
@@ -163,13 +163,15 @@ class RegionSelection::Greedy {
 };
 
 RegionSelection::RegionSelection(const FrameSource& performance, const BlendshapeModel& target,
-                                 const RegionSelectionOptions& options)
+                                 const RegionSelectionOptions& options, const Context& context)
     : target_(target), options_(options) {
-  const BlendshapeTransferOptions of_transfer{
-      .edges = options.edges, .pairing = options.pairing, .threads = options.threads};
+  check_options(options);
+  // Each process solves for itself.
+  const Context alone = context.without_ranks();
   const Eigen::MatrixXd weights =
-      BlendshapeTransfer(performance.rest(), target, all_triangles(target.triangles()), of_transfer)
-          .weights(performance);
+      BlendshapeTransfer(performance.rest(), target, all_triangles(target.triangles()),
+                         {.edges = options.edges, .pairing = options.pairing}, alone.part(0, 0.2))
+          .weights(performance, alone.part(0.2, 0.6));
   const Pairing* pairing = options.pairing.get();
   const DeformationGradients gradients =
       gradients_between(performance.rest(), target.triangles(), pairing,
@@ -179,10 +181,10 @@ RegionSelection::RegionSelection(const FrameSource& performance, const Blendshap
   for (std::size_t s = 0; s < gradients.selected().size(); ++s) {
     row_of_[gradients.selected()[s]] = static_cast<int>(s);
   }
-  unmet_ = wanted_change(gradients, target, performance, options.edges, options.threads);
+  unmet_ = wanted_change(gradients, target, performance, options.edges, alone.part(0.6, 0.8));
   const double wanted = unmet_.squaredNorm();
   unmet_ = unmet_change(std::move(unmet_), gradients.selected(), target, weights, options.edges,
-                        options.threads);
+                        alone.part(0.8, 1));
   choice_.emplace(gram_matrix(target, gradients.selected(), options.edges),
                   variance_of(unmet_, wanted), options.noise);
 }
@@ -202,8 +204,8 @@ Sight RegionSelection::sight_of(std::span<const int> triangles) const {
   return sight;
 }
 
-std::vector<int> RegionSelection::choose(std::span<const Disc> discs,
-                                         const SelectionBound& bound) const {
+std::vector<int> RegionSelection::choose(std::span<const Disc> discs, const SelectionBound& bound,
+                                         const Context& context) const {
   check_bound(bound);
   fix_product_blocking();
   Greedy greedy(*this, discs);
@@ -211,13 +213,15 @@ std::vector<int> RegionSelection::choose(std::span<const Disc> discs,
   const auto all = static_cast<int>(std::floor(bound.share * triangles + kWholeTriangle));
   const auto most = static_cast<std::size_t>(bound.count.value_or(std::numeric_limits<int>::max()));
   int room = all;
+  double done = 0;
   std::vector<int> chosen;
   while (chosen.size() < most) {
-    const std::optional<int> best = greedy.best(room);
+    const std::optional<int> best = greedy.best(room, context.part(done, done));
     if (!best) break;
     room -= greedy.take(*best);
     chosen.push_back(*best);
-    report_progress(options_.progress, 1 - static_cast<double>(room) / all);
+    done = 1 - static_cast<double>(room) / all;
+    context.report(done);
   }
   return chosen;
 }

@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "toolkit/correspondence/pairing.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/frame_source.h"
-#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/option.h"
 #include "toolkit/model/blendshape_model.h"
 #include "toolkit/regions/disc_search.h"
 #include "toolkit/transfer/disc_choice.h"
@@ -21,10 +22,10 @@ struct RegionSelectionOptions {
   EdgeSum edges = EdgeSum::all;
   /// Of source and target where their faces differ, or null.
   std::shared_ptr<const Pairing> pairing = {};
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  /// Of choose().
-  Progress progress = {};
+
+  static constexpr Option kNoise{"noise", &RegionSelectionOptions::noise, {.minimum = 1e-6}};
+  static constexpr Option kEdges{"edges", &RegionSelectionOptions::edges};
+  static constexpr auto declared() { return std::tuple(kNoise, kEdges); }
 };
 
 /// How much may be chosen.
@@ -44,14 +45,16 @@ struct SelectionBound {
 class RegionSelection {
  public:
   /// `performance` is the source where the target is, F >= 1 frames with its neutral as rest pose.
-  /// Throws as BlendshapeTransfer, and what reading throws. It keeps a reference to the target.
+  /// Keeps a reference to the target. Throws what BlendshapeTransfer and reading throw, and
+  /// std::invalid_argument for options out of range.
   RegionSelection(const FrameSource& performance, const BlendshapeModel& target,
-                  const RegionSelectionOptions& options = {});
+                  const RegionSelectionOptions& options = {}, const Context& context = {});
 
   /// Numbers of the chosen discs, in their order; none where no disc fits into the bound. Where
   /// discs are equally good, the first is taken. The triangles of each are the source's, ascending.
   /// Throws std::invalid_argument for a bound out of range, Cancelled.
-  std::vector<int> choose(std::span<const Disc> discs, const SelectionBound& bound = {}) const;
+  std::vector<int> choose(std::span<const Disc> discs, const SelectionBound& bound = {},
+                          const Context& context = {}) const;
 
   /// J of triangles of the target; those without partner show nothing.
   double criterion(const std::vector<int>& triangles) const;

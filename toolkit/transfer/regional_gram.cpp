@@ -73,12 +73,13 @@ class GatheredFields {
 }  // namespace
 
 Eigen::MatrixXd regional_gram(const BlendshapeModel& target, const RegionShares& shares,
-                              const std::vector<int>& triangles, EdgeSum sum, int threads) {
+                              const std::vector<int>& triangles, EdgeSum sum,
+                              const Context& context) {
   fix_product_blocking();
   const Eigen::MatrixXd& fields = target.expressions().displacements;
   const Eigen::Index D = fields.cols(), R = shares.cols();
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(R * D, R * D);
-  parallel_for(static_cast<int>(R), threads, [&](int s) {
+  const auto fill = [&](int s) {
     const GatheredFields gathered(target, shares.col(s), triangles, sum);
     for (Eigen::Index r = 0; r <= s; ++r) {
       const Eigen::MatrixXd block = gathered.product(fields, shares, r);
@@ -88,7 +89,8 @@ Eigen::MatrixXd regional_gram(const BlendshapeModel& target, const RegionShares&
     // Symmetric to the last bit, as a solver may read either half.
     const Eigen::MatrixXd own = gram.block(s * D, s * D, D, D);
     gram.block(s * D, s * D, D, D) = (own + own.transpose()) / 2;
-  });
+  };
+  parallel_for(static_cast<int>(R), fill, context);
   return gram;
 }
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "toolkit/mesh/progress.h"
-
 namespace mimetra {
 
 namespace {

@@ -67,9 +67,9 @@ class PlacesOverPairs {
  public:
   PlacesOverPairs(const FrameSource& source, const Positions& target_rest,
                   const Triangles& target_triangles, const Pairing& pairing,
-                  const std::vector<VertexIndex>& moves_as, const BlockOptions& options)
+                  const std::vector<VertexIndex>& moves_as, const Context& context)
       : at_source_(staying_together(source, Weld::exact(source.rest()),
-                                    kRoundingShare * source.diameter(), options)),
+                                    kRoundingShare * source.diameter(), context)),
         source_(source.rest(), at_source_.welded(source.triangles())),
         target_(target_rest, target_triangles),
         pairing_(pairing),
@@ -239,8 +239,7 @@ class CarriedFrames : public FrameSource {
 
 }  // namespace
 
-Weld closed_seams(const FrameSource& source, const Positions& target_rest,
-                  const BlockOptions& options) {
+Weld closed_seams(const FrameSource& source, const Positions& target_rest, const Context& context) {
   if (target_rest.rows() != source.vertices()) {
     throw MismatchError("the source has " + std::to_string(source.vertices()) +
                         " vertices, the target " + std::to_string(target_rest.rows()));
@@ -251,12 +250,12 @@ Weld closed_seams(const FrameSource& source, const Positions& target_rest,
   const Weld near =
       near_in_both(source.rest(), parted, target_rest,
                    kPartedShare * diameter(target_rest, source.triangles()), at_target, on);
-  return staying_together(source, near, parted, options);
+  return staying_together(source, near, parted, context);
 }
 
 Weld closed_seams(const FrameSource& source, const Positions& target_rest,
                   const Triangles& target_triangles, const Pairing& pairing,
-                  const BlockOptions& options) {
+                  const Context& context) {
   check_sizes(source.rest(), target_rest, &pairing);
   const Weld at_target = Weld::exact(target_rest);
   const std::vector<bool> on = on_surface(target_rest, target_triangles, at_target);
@@ -273,13 +272,13 @@ Weld closed_seams(const FrameSource& source, const Positions& target_rest,
         near_in_both(place_at_source, parted, target_rest,
                      kPartedShare * diameter(target_rest, target_triangles), at_target, on);
     return staying_together(CarriedFrames(source, target_rest, pairing, moves_as), near, parted,
-                            options);
+                            context);
   }
   std::optional<PlacesOverPairs> over_pairs;
   Joined joined(on);
   joined.add(at_target.representative, [&](const auto& place) {
     if (!over_pairs) {
-      over_pairs.emplace(source, target_rest, target_triangles, pairing, moves_as, options);
+      over_pairs.emplace(source, target_rest, target_triangles, pairing, moves_as, context);
     }
     return over_pairs->lowest_of(place);
   });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "toolkit/correspondence/pairing.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/weld.h"
 
 namespace mimetra {
@@ -21,7 +22,7 @@ constexpr double kPartedShare = 1e-3;
 /// MismatchError for another number of vertices, std::invalid_argument that names a vertex of a
 /// rest pose which is not finite; what reading throws, Cancelled.
 Weld closed_seams(const FrameSource& source, const Positions& target_rest,
-                  const BlockOptions& = {});
+                  const Context& context = {});
 
 /// The same for a target of other faces (rest pose and triangles), which it shares with no source:
 /// where numbers differ only, as if it did. Otherwise its vertices at one place are one where what
@@ -30,6 +31,6 @@ Weld closed_seams(const FrameSource& source, const Positions& target_rest,
 /// with those that it is at one place with. `source` is placed at the target.
 Weld closed_seams(const FrameSource& source, const Positions& target_rest,
                   const Triangles& target_triangles, const Pairing& pairing,
-                  const BlockOptions& = {});
+                  const Context& context = {});
 
 }  // namespace mimetra

@@ -78,8 +78,9 @@ bool fit_together(const FrameSource& source, const FrameSource& result, const Pa
 }
 
 void check(const FrameSource& source, const FrameSource& result, const std::vector<int>& selected,
-           const Pairing* pairing) {
-  if (!fit_together(source, result, pairing)) {
+           const TransferErrorOptions& options) {
+  check_options(options);
+  if (!fit_together(source, result, options.pairing.get())) {
     const auto size = [](const FrameSource& sequence) {
       return std::to_string(sequence.frames()) + " frames of " +
              std::to_string(sequence.vertices()) + " vertices and " +
@@ -247,21 +248,20 @@ class FrameErrors {
 }  // namespace
 
 TransferError transfer_error(const FrameSource& source, const FrameSource& result,
-                             const std::vector<int>& selected,
-                             const TransferErrorOptions& options) {
-  check(source, result, selected, options.pairing.get());
+                             const std::vector<int>& selected, const TransferErrorOptions& options,
+                             const Context& context) {
+  check(source, result, selected, options);
   const auto triangles = static_cast<int>(result.triangles().rows());
   const FrameErrors errors_of(source, result, selected, options);
   const int count = errors_of.counted();
-  const FrameNumbers measured =
-      over_frames(source, triangles, kMeasured, {options.threads, options.progress, options.ranks},
-                  [&](int first, const FrameBlock& poses, FrameRows& numbers) {
-                    const FrameBlock found(result, first, poses.frames());
-                    for (int row = 0; row < poses.frames(); ++row) {
-                      numbers.row(row).tail<kMeasured>() = errors_of(
-                          poses.frame(row), found.frame(row), numbers.row(row).head(triangles));
-                    }
-                  });
+  const auto measure = [&](int first, const FrameBlock& poses, FrameRows& numbers) {
+    const FrameBlock found(result, first, poses.frames());
+    for (int row = 0; row < poses.frames(); ++row) {
+      numbers.row(row).tail<kMeasured>() =
+          errors_of(poses.frame(row), found.frame(row), numbers.row(row).head(triangles));
+    }
+  };
+  const FrameNumbers measured = over_frames(source, triangles, kMeasured, measure, context);
   TransferError error;
   error.per_triangle = measured.sum;
   error.per_frame = measured.of_each.col(kSum);

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "toolkit/correspondence/pairing.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/mesh_sequence.h"
+#include "toolkit/mesh/option.h"
 #include "toolkit/mesh/weld.h"
 #include "toolkit/transfer/edges.h"
 
@@ -54,22 +56,19 @@ struct TransferErrorOptions {
   /// Vertices that are one point of the target's surface (N), so that a border on a seam is seen;
   /// by default none are.
   Weld weld = {};
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  Progress progress = {};
-  /// Processes that frames are dealt out to, as in BlockOptions.
-  const Ranks* ranks = nullptr;
+
+  static constexpr Option kEdges{"edges", &TransferErrorOptions::edges};
+  static constexpr auto declared() { return std::tuple(kEdges); }
 };
 
 /// `result` is the transferred sequence before head motion is given back; its rest pose is the
 /// target's neutral. `source` F frames with its neutral as rest. `selected` = L, rows of the
-/// target's triangles. Throws MismatchError where sizes differ, std::invalid_argument for a row out
-/// of range or weights that are not in [0, 1], what reading throws, and Cancelled. A degenerate
-/// source triangle is measured against what stands in for it in the transfer. The result does not
-/// depend on the number of threads.
+/// target's triangles. A degenerate source triangle is measured against what stands in for it in
+/// the transfer. Throws MismatchError if sizes differ, std::invalid_argument for a row or an option
+/// out of range or weights that are not in [0, 1], what reading throws, and Cancelled.
 TransferError transfer_error(const FrameSource& source, const FrameSource& result,
                              const std::vector<int>& selected,
-                             const TransferErrorOptions& options = {});
+                             const TransferErrorOptions& options = {}, const Context& context = {});
 
 /// Flipped triangles of all in all frames.
 double flipped_share(const TransferError& error);

@@ -124,7 +124,8 @@ std::vector<bool> mask_of(const std::vector<int>& selected, Eigen::Index triangl
 /// apart at rest they stay so.
 struct VertexTransfer::State {
   State(const Positions& source, const Positions& target, const Triangles& triangles,
-        const std::vector<int>& selected, const VertexTransferOptions& options);
+        const std::vector<int>& selected, const VertexTransferOptions& options,
+        const Context& context);
 
   std::vector<int> uncollapsed(std::vector<int> selected) const;
   void weigh();
@@ -141,7 +142,8 @@ struct VertexTransfer::State {
   Row motion_of(const std::vector<Pairing::Carrier>& carriers,
                 const Eigen::Ref<const Frames>& frames) const;
   Frames solve(const Eigen::Map<const Frames>& frames) const;
-  void solve_all(const FrameSource& performance, const TakeBlock& take) const;
+  void solve_all(const FrameSource& performance, const Context::TakeBlock& take,
+                 const Context& context) const;
   std::array<int, 3> unknowns_of(int triangle) const;
   bool collapses(int triangle) const;
 
@@ -166,7 +168,7 @@ struct VertexTransfer::State {
 
 VertexTransfer::State::State(const Positions& source, const Positions& target,
                              const Triangles& faces, const std::vector<int>& selected,
-                             const VertexTransferOptions& given)
+                             const VertexTransferOptions& given, const Context& context)
     : source_rest(source),
       target_rest(target),
       options(completed(given, target.rows())),
@@ -195,8 +197,11 @@ VertexTransfer::State::State(const Positions& source, const Positions& target,
         "an anchor was given, but fixed vertices hold the mesh in place already; let the vertices "
         "outside the regions move (Outside::identity) or select all triangles");
   }
+  context.report(0.3);
   factor();
+  context.report(0.8);
   prepare_pull(gradients);
+  context.report(1);
 }
 
 /// Those of L that take part. Throws std::invalid_argument for a row out of range.
@@ -455,39 +460,42 @@ Frames VertexTransfer::State::solve(const Eigen::Map<const Frames>& frames) cons
 
 VertexTransfer::VertexTransfer(const Positions& source_rest, const Positions& target_rest,
                                const Triangles& triangles, const std::vector<int>& selected,
-                               const VertexTransferOptions& options) {
+                               const VertexTransferOptions& options, const Context& context) {
   check(source_rest, target_rest, triangles, options);
-  state_ = std::make_unique<State>(source_rest, target_rest, triangles, selected, options);
+  state_ = std::make_unique<State>(source_rest, target_rest, triangles, selected, options, context);
 }
 
 VertexTransfer::~VertexTransfer() = default;
 VertexTransfer::VertexTransfer(VertexTransfer&&) noexcept = default;
 VertexTransfer& VertexTransfer::operator=(VertexTransfer&&) noexcept = default;
 
-/// Gives `take` the poses of every kLanes frames, as for_each_dealt().
-void VertexTransfer::State::solve_all(const FrameSource& performance, const TakeBlock& take) const {
+/// Gives the poses of every kLanes frames to `take`, as Context::for_each_block() does.
+void VertexTransfer::State::solve_all(const FrameSource& performance,
+                                      const Context::TakeBlock& take,
+                                      const Context& context) const {
   if (performance.vertices() != source_rest.rows()) {
     throw MismatchError("the performance has " + std::to_string(performance.vertices()) +
                         " vertices, the source " + std::to_string(source_rest.rows()));
   }
-  for_each_dealt(
+  context.for_each_block(
       performance.frames(), kLanes, 3 * target_rest.rows(),
-      {options.threads, options.progress, options.ranks},
       [&](int first, int count) { return solve(FrameBlock(performance, first, count).poses()); },
       take);
 }
 
-Frames VertexTransfer::frames(const FrameSource& performance) const {
+Frames VertexTransfer::frames(const FrameSource& performance, const Context& context) const {
   Frames result(performance.frames(), 3 * state_->target_rest.rows());
-  state_->solve_all(performance, [&result](int first, const Frames& poses) {
+  const auto take = [&result](int first, const Frames& poses) {
     result.middleRows(first, poses.rows()) = poses;
-  });
+  };
+  state_->solve_all(performance, take, context);
   return result;
 }
 
-void VertexTransfer::write_frames(const FrameSource& performance, FrameSink& sink) const {
-  state_->solve_all(performance,
-                    [&sink](int first, const Frames& poses) { sink.write(first, poses); });
+void VertexTransfer::write_frames(const FrameSource& performance, FrameSink& sink,
+                                  const Context& context) const {
+  const auto take = [&sink](int first, const Frames& poses) { sink.write(first, poses); };
+  state_->solve_all(performance, take, context);
 }
 
 int VertexTransfer::collapsed_triangles() const {

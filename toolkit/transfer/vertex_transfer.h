@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "toolkit/correspondence/pairing.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/mesh_sequence.h"
 #include "toolkit/mesh/option.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/weld.h"
 
 namespace mimetra {
@@ -57,6 +57,18 @@ enum class Anchor {
   vertex          ///< one vertex stays
 };
 
+constexpr std::string_view choice_name(Anchor value) {
+  switch (value) {
+    case Anchor::source_motion:
+      return "source";
+    case Anchor::centroid:
+      return "centroid";
+    case Anchor::vertex:
+      return "vertex";
+  }
+  return {};
+}
+
 struct VertexTransferOptions {
   TriangleWeight triangle_weight = TriangleWeight::unit;
   Outside outside = Outside::fixed;
@@ -81,14 +93,9 @@ struct VertexTransferOptions {
   /// By default the source's motion. One that is given is refused where fixed vertices hold the
   /// mesh.
   std::optional<Anchor> anchor = {};
-  /// The vertex of Anchor::vertex; other pieces are then held by their lowest vertex.
+  /// Vertex of Anchor::vertex, -1 for none. The lowest vertex of a piece holds it if the piece does
+  /// not contain this one.
   VertexIndex anchor_vertex = -1;
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  /// Of frames() and write_frames().
-  Progress progress = {};
-  /// Processes that frames are dealt out to, as in BlockOptions.
-  const Ranks* ranks = nullptr;
 
   static constexpr Option kTriangleWeight{"triangle_weight",
                                           &VertexTransferOptions::triangle_weight};
@@ -97,8 +104,12 @@ struct VertexTransferOptions {
       "outside_weight", &VertexTransferOptions::outside_weight, {.minimum = 1e-12}};
   static constexpr Option kOutsideSmoothness{
       "outside_smoothness", &VertexTransferOptions::outside_smoothness, {.minimum = 0}};
+  static constexpr Option kAnchor{"anchor", &VertexTransferOptions::anchor};
+  static constexpr Option kAnchorVertex{
+      "anchor_vertex", &VertexTransferOptions::anchor_vertex, {.minimum = -1}};
   static constexpr auto declared() {
-    return std::tuple(kTriangleWeight, kOutside, kOutsideWeight, kOutsideSmoothness);
+    return std::tuple(kTriangleWeight, kOutside, kOutsideWeight, kOutsideSmoothness, kAnchor,
+                      kAnchorVertex);
   }
 };
 
@@ -129,23 +140,24 @@ class VertexTransfer {
  public:
   /// `source_rest`, `target_rest` N x 3; `selected` are rows of the target's `triangles` (M x 3),
   /// with weights those that have a corner of weight above 0.
-  /// Throws MismatchError where vertex counts differ, std::invalid_argument for options out of
+  /// Throws MismatchError if vertex counts differ, std::invalid_argument for options out of
   /// range, an explicit anchor where vertices are fixed, an index out of range, vertices that are
   /// one but lie apart in a rest pose (by more than 2 kPartedShare of its box), or weights together
-  /// with Outside::identity.
+  /// with Outside::identity; Cancelled.
   VertexTransfer(const Positions& source_rest, const Positions& target_rest,
                  const Triangles& triangles, const std::vector<int>& selected,
-                 const VertexTransferOptions& = {});
+                 const VertexTransferOptions& options = {}, const Context& context = {});
   ~VertexTransfer();
   VertexTransfer(VertexTransfer&&) noexcept;
   VertexTransfer& operator=(VertexTransfer&&) noexcept;
 
   /// Target poses for every frame, F x 3N. Throws MismatchError, Cancelled, std::runtime_error
   /// where the system cannot be factored, and what reading throws.
-  Frames frames(const FrameSource& performance) const;
+  Frames frames(const FrameSource& performance, const Context& context = {}) const;
   /// The same into a sink, up to sixteen frames at a time; to commit is left to the caller. Throws
   /// what writing throws, too.
-  void write_frames(const FrameSource& performance, FrameSink& sink) const;
+  void write_frames(const FrameSource& performance, FrameSink& sink,
+                    const Context& context = {}) const;
 
   /// Triangles of which two corners are one vertex: they take no part, and are none of the
   /// degenerate ones.

@@ -16,11 +16,11 @@ constexpr int kTrianglesPerPiece = 256;
 }  // namespace
 
 Eigen::MatrixXd wanted_change(const DeformationGradients& gradients, const BlendshapeModel& target,
-                              const FrameSource& performance, EdgeSum sum, int threads) {
+                              const FrameSource& performance, EdgeSum sum, const Context& context) {
   const std::vector<int>& selected = gradients.selected();
   const Eigen::Matrix2d factor = edge_factor(sum);
   Eigen::MatrixXd wanted(6 * selected.size(), performance.frames());
-  parallel_for(performance.frames(), threads, [&](int f) {
+  const auto fill_frame = [&](int f) {
     const FrameBlock block(performance, f, 1);
     const auto q = gradients(block.frame(0));
     for (std::size_t s = 0; s < selected.size(); ++s) {
@@ -31,21 +31,23 @@ Eigen::MatrixXd wanted_change(const DeformationGradients& gradients, const Blend
       const Edges changed = change.lazyProduct(edges);
       wanted.col(f).segment<6>(6 * row) = changed.reshaped();
     }
-  });
+  };
+  parallel_for(performance.frames(), fill_frame, context);
   return wanted;
 }
 
 Eigen::MatrixXd unmet_change(Eigen::MatrixXd wanted, std::span<const int> triangles,
                              const BlendshapeModel& target, const Eigen::MatrixXd& weights,
-                             EdgeSum sum, int threads) {
+                             EdgeSum sum, const Context& context) {
   fix_product_blocking();
   const auto count = static_cast<int>(triangles.size());
-  parallel_for((count + kTrianglesPerPiece - 1) / kTrianglesPerPiece, threads, [&](int piece) {
+  const auto subtract = [&](int piece) {
     const int first = piece * kTrianglesPerPiece;
     const int size = std::min(kTrianglesPerPiece, count - first);
     wanted.middleRows(6 * first, 6 * size).noalias() -=
         edge_rows(target, triangles.subspan(first, size), sum) * weights.transpose();
-  });
+  };
+  parallel_for((count + kTrianglesPerPiece - 1) / kTrianglesPerPiece, subtract, context);
   return wanted;
 }
 

@@ -5,7 +5,6 @@
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/regions_file.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/colors.h"
@@ -23,15 +22,14 @@ BoundParameters<VtpOptions> vtp_parameters() {
                   "compression of .vtp: fast (LZ4) or small (zlib)");
 }
 
-std::vector<std::filesystem::path> write(const FieldSequence& fields, const WriteRequest& request) {
+std::vector<std::filesystem::path> write(const FieldSequence& fields, const WriteRequest& request,
+                                         const Context& context) {
   VtpOptions options = vtp_parameters().read(request.parameters);
   options.overwrite = request.overwrite;
   options.inputs = request.inputs;
   options.together = request.together;
-  options.threads = request.threads;
-  options.progress = request.progress;
-  return write_with_extra(request,
-                          [&] { return write_vtp_series(fields, request.target, options); });
+  return write_with_extra(
+      request, [&] { return write_vtp_series(fields, request.target, options, context); });
 }
 
 /// Throws MismatchError where frames would be left out.
@@ -43,44 +41,46 @@ void check_frame_count(const FrameSource& frames, const std::filesystem::path& t
 }
 
 std::vector<std::filesystem::path> write_sequence_data(const Data& data,
-                                                       const WriteRequest& request) {
+                                                       const WriteRequest& request,
+                                                       const Context& context) {
   FieldSequence sequence = std::get<FieldSequence>(data);
   check_frame_count(*sequence.frames, request.target);
   show_displacement(sequence);
-  return write(sequence, request);
+  return write(sequence, request, context);
 }
 
-ReadValue read_sequence_data(const std::string& text, const ReadRequest& request) {
+ReadValue read_sequence_data(const std::string& text, const ReadRequest& request,
+                             const Context& context) {
   const SequenceSource source = frame_parameters().read(request.parameters);
   const auto selected = [&](int count) { return selected_frames(source.frames, count); };
   std::vector<std::string> notes;
-  const auto note = [&](const std::string& odd) { notes.push_back(text + ": " + odd); };
-  const VtpReadOptions options{
-      .selected = selected, .fields = request.fields, .note = note, .progress = request.progress};
-  FieldSequence read =
-      request.may_stream ? open_vtp_series(text, options) : read_vtp_series(text, options);
+  const Context noting =
+      context.with_notes([&](const Note& note) { notes.push_back(text + ": " + note.text); });
+  const VtpReadOptions options{.selected = selected, .fields = request.fields};
+  FieldSequence read = request.may_stream ? open_vtp_series(text, options, noting)
+                                          : read_vtp_series(text, options, noting);
   check_rate(text, read.frames->known_times(), source);
   // Chosen frames may lie far apart.
   const std::string odd = source.frames ? "" : note_on_steps(read.frames->known_times());
-  if (!odd.empty()) note(odd);
+  if (!odd.empty()) noting.note(odd);
   return {{text, std::move(read)}, vtp_series_files(text), std::move(notes)};
 }
 
-std::vector<std::filesystem::path> write_region_data(const Data& data,
-                                                     const WriteRequest& request) {
+std::vector<std::filesystem::path> write_region_data(const Data& data, const WriteRequest& request,
+                                                     const Context& context) {
   FieldSequence shown = std::get<RegionData>(data).fields;
   if (shown.frames->frames() > 0) {
     const auto region = std::ranges::find(shown.fields, "region", &Field::name);
     if (region != shown.fields.end() && region->values.rows() == shown.frames->vertices()) {
       shown.fields.push_back(region_color_field(*region, shown.frames->connectivity()));
     }
-    return write(shown, request);
+    return write(shown, request, context);
   }
   throw MismatchError(request.target.string() +
                       ": the regions come without a mesh to show them on; write .json or .csv");
 }
 
-ReadValue read_region_data(const std::string& text, const ReadRequest& request) {
+ReadValue read_region_data(const std::string& text, const ReadRequest& request, const Context&) {
   return {{text, RegionData{region_of_mask(text, read_vtp_field(text, "roi"),
                                            find_vtp_field(text, "weight"), request.vertices,
                                            *request.triangles),

@@ -19,7 +19,6 @@
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/face_order.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/vtk/displaced_rest.h"
 #include "toolkit/vtk/poly_data.h"
@@ -201,7 +200,7 @@ struct Findings {
 
 Findings look_through(vtkPolyData& first, const Positions& positions,
                       const Connectivity& connectivity, const std::vector<FrameFile>& files,
-                      bool with_fields) {
+                      bool with_fields, const Context& context) {
   const std::string name = files.front().file.string();
   DisplacedRest displaced(static_cast<int>(files.size()));
   displaced.look_at(first, positions);
@@ -209,6 +208,7 @@ Findings look_through(vtkPolyData& first, const Positions& positions,
   const auto is_whole = [&carried] { return carried && carried->note.empty(); };
   ComparedFields fields(with_fields ? fields_of(first, connectivity) : std::vector<Field>());
   for (int f = 1; f < static_cast<int>(files.size()); ++f) {
+    context.report(static_cast<double>(f) / static_cast<double>(files.size()));
     const bool is_sampled = displaced.looks_at(f);
     if (!is_sampled && fields.steady().empty()) continue;
     if (!displaced.is_possible() && !is_whole() && !with_fields) break;
@@ -258,7 +258,9 @@ std::vector<std::string> notes_on(const Findings& found) {
 
 }  // namespace
 
-FieldSequence open_vtp_series(const fs::path& path, const VtpReadOptions& options) {
+FieldSequence open_vtp_series(const fs::path& path, const VtpReadOptions& options,
+                              const Context& context) {
+  check_options(options);
   const std::vector<FrameFile> all = entries_of(path);
   const auto count = static_cast<int>(all.size());
   std::vector<FrameFile> chosen;
@@ -271,8 +273,9 @@ FieldSequence open_vtp_series(const fs::path& path, const VtpReadOptions& option
   const Positions positions = positions_of(*data, first);
   SequenceHeader header;
   header.connectivity = std::make_shared<Connectivity>(connectivity_of(*data, first));
-  Findings found = look_through(*data, positions, *header.connectivity, chosen, options.fields);
-  if (options.note) std::ranges::for_each(notes_on(found), options.note);
+  Findings found =
+      look_through(*data, positions, *header.connectivity, chosen, options.fields, context);
+  for (const std::string& note : notes_on(found)) context.note(note);
   header.rest = found.carried ? found.carried->positions : found.displaced.value_or(positions);
   header.rest_is_known = found.carried || found.displaced;
   header.times_are_known = lower_extension(path) != ".vtp";
@@ -284,9 +287,10 @@ FieldSequence open_vtp_series(const fs::path& path, const VtpReadOptions& option
           std::move(found.fields)};
 }
 
-FieldSequence read_vtp_series(const fs::path& path, const VtpReadOptions& options) {
-  FieldSequence open = open_vtp_series(path, options);
-  return {MeshSequence(*open.frames, {.progress = options.progress}), std::move(open.fields)};
+FieldSequence read_vtp_series(const fs::path& path, const VtpReadOptions& options,
+                              const Context& context) {
+  FieldSequence open = open_vtp_series(path, options, context.part(0, 0));
+  return {MeshSequence(*open.frames, context), std::move(open.fields)};
 }
 
 std::vector<fs::path> vtp_series_files(const fs::path& path) {

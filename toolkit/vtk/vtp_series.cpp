@@ -16,7 +16,6 @@
 #include "toolkit/io/whole_file.h"
 #include "toolkit/io/written_files.h"
 #include "toolkit/mesh/parallel.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/xml_text.h"
 #include "toolkit/vtk/poly_data.h"
@@ -190,18 +189,18 @@ std::vector<FrameEntry> entries_of(const FrameSource& sequence, const std::strin
 }
 
 std::filesystem::path write_one(const FieldSequence& fields, const std::filesystem::path& target,
-                                const VtpOptions& options) {
+                                const VtpOptions& options, const Context& context) {
   PendingOutputs outputs(options.overwrite, options.inputs, options.together);
   write_bytes(outputs.add(target, PendingOutput::Kind::file),
               vtp_text(FrameData(fields).at(0), options.compression));
-  report_progress(options.progress, 1);
+  context.report(1);
   outputs.commit();
   return target;
 }
 
 std::vector<std::filesystem::path> write_all(const FieldSequence& fields,
                                              const std::filesystem::path& target,
-                                             const VtpOptions& options) {
+                                             const VtpOptions& options, const Context& context) {
   const std::string name = target.stem().string();
   if (!is_printable(name)) {
     throw OutputError(target.string(),
@@ -238,8 +237,8 @@ std::vector<std::filesystem::path> write_all(const FieldSequence& fields,
     write(*data, f + 1);
     pool.give_back(std::move(data));
   };
-  parallel_for(fields.frames->frames() - 1, options.threads, write_further, options.progress);
-  report_progress(options.progress, 1);
+  parallel_for(fields.frames->frames() - 1, write_further, context);
+  context.report(1);
   outputs.commit();
   return written;
 }
@@ -248,13 +247,14 @@ std::vector<std::filesystem::path> write_all(const FieldSequence& fields,
 
 std::vector<std::filesystem::path> write_vtp_series(const FieldSequence& fields,
                                                     const std::filesystem::path& target,
-                                                    const VtpOptions& options) {
+                                                    const VtpOptions& options,
+                                                    const Context& context) {
   check(fields);
   check_options(options);
   const SilentVtk silent;
   const std::string extension = lower_extension(target);
-  if (extension == ".vtp") return {write_one(fields, target, options)};
-  if (extension == ".pvd") return write_all(fields, target, options);
+  if (extension == ".vtp") return {write_one(fields, target, options, context)};
+  if (extension == ".pvd") return write_all(fields, target, options, context);
   throw std::invalid_argument(target.string() + ": expected a name that ends in .pvd or .vtp");
 }
 

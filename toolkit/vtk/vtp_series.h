@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/fields.h"
 #include "toolkit/mesh/option.h"
-#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 
@@ -36,12 +36,10 @@ struct VtpOptions {
   std::vector<std::filesystem::path> inputs = {};
   /// Outputs that it appears together with; alone without.
   PendingOutputs* together = nullptr;
-  /// 0 for all there are; what is written does not depend on it.
-  int threads = 0;
-  Progress progress = {};
 
   static constexpr Option kCompression{"compression", &VtpOptions::compression};
-  static constexpr auto declared() { return std::tuple(kCompression); }
+  static constexpr Option kOverwrite{"overwrite", &VtpOptions::overwrite};
+  static constexpr auto declared() { return std::tuple(kCompression, kOverwrite); }
 };
 
 /// Writes a sequence with its fields for ParaView: `NAME.pvd` and `NAME.vtp.series` beside a folder
@@ -53,16 +51,17 @@ struct VtpOptions {
 /// nor .vtp.
 std::vector<std::filesystem::path> write_vtp_series(const FieldSequence& fields,
                                                     const std::filesystem::path& target,
-                                                    const VtpOptions& = {});
+                                                    const VtpOptions& = {},
+                                                    const Context& context = {});
 
 struct VtpReadOptions {
   /// Chooses frames, 0-based, from their number; all without.
   std::function<std::vector<int>(int count)> selected = {};
   /// False to take none, and to look into no further file for them.
   bool fields = true;
-  /// Called with what is odd about the rest pose and the fields.
-  std::function<void(const std::string&)> note = {};
-  Progress progress = {};
+
+  static constexpr Option kFields{"fields", &VtpReadOptions::fields};
+  static constexpr auto declared() { return std::tuple(kFields); }
 };
 
 /// A series as write_vtp_series writes it, and ParaView too: NAME.pvd, NAME.vtp.series, or one
@@ -70,12 +69,14 @@ struct VtpReadOptions {
 /// which each is read once; others are left out, which is noted (those that only some have and the
 /// first has not where DisplacedRest looks). `displacement` gives the rest pose, and is not a
 /// field, where DisplacedRest finds one. The other frames are read when they are needed, which
-/// throws as this does: IoError that names the file, MismatchError where a frame has other vertices
-/// or faces; these may come in another order or be cut otherwise, as long as none is flipped.
-FieldSequence open_vtp_series(const std::filesystem::path& path, const VtpReadOptions& = {});
+/// throws as this does: IoError that names the file, MismatchError if a frame has other vertices or
+/// faces (they may come in another order or be cut otherwise, if none is flipped), Cancelled.
+FieldSequence open_vtp_series(const std::filesystem::path& path, const VtpReadOptions& = {},
+                              const Context& context = {});
 
-/// The same with all frames in memory. Throws Cancelled, too.
-FieldSequence read_vtp_series(const std::filesystem::path& path, const VtpReadOptions& = {});
+/// The same with all frames in memory.
+FieldSequence read_vtp_series(const std::filesystem::path& path, const VtpReadOptions& = {},
+                              const Context& context = {});
 
 /// The files that open_vtp_series reads for a path: itself, and the frames it names.
 std::vector<std::filesystem::path> vtp_series_files(const std::filesystem::path& path);

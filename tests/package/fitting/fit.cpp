@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
     try {
       const Format& format = table.reader(DataKind::landmarks, argv[1]);
       const Parameters parameters(format.reading);
-      format.read(argv[1], {.parameters = parameters});
+      format.read(argv[1], {.parameters = parameters}, {});
     } catch (const IoError& error) {
       std::cerr << error.what() << '\n';
       return 3;

@@ -193,7 +193,7 @@ void OperationCall::check_inputs() const {
   }
 }
 
-Call OperationCall::loaded(const Progress& progress, const Log& log) const {
+Call OperationCall::loaded(const Log& log, const Context& context) const {
   check_inputs();
   CallRequest request;
   request.operation = &operation_;
@@ -203,8 +203,8 @@ Call OperationCall::loaded(const Progress& progress, const Log& log) const {
     if (has_input(name)) request.named[name] = {to_text(value)};
   }
   if (!manifest_.empty()) request.manifest = Destination{manifest_, true};
-  request.progress = progress;
   request.log = log;
+  request.context = context;
   Call call(table_, std::move(request));
   call.load();
   if (components_ && !call.invocation().inputs.contains(kComponents)) {

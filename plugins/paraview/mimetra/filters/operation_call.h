@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/operations/call.h"
 
 /// True where both have one name, place and values; NaN is NaN.
@@ -47,7 +47,7 @@ class OperationCall {
   /// The inputs given, and those read from files, ready to run. Throws what the readers throw,
   /// UsageError without an input that it needs, OutputError for a manifest that cannot be written
   /// or would replace anything but one of the same operation.
-  mimetra::Call loaded(const mimetra::Progress& progress, const mimetra::Log& log) const;
+  mimetra::Call loaded(const mimetra::Log& log, const mimetra::Context& context) const;
 
   /// True while what was computed still holds.
   bool is_done() const { return outcome_.has_value(); }

@@ -4,8 +4,8 @@
 
 #include "plugins/paraview/mimetra/filters/operation_call.h"
 #include "plugins/paraview/mimetra/filters/proxy_xml.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/progress.h"
 #include "toolkit/operations/option_words.h"
 
 using namespace mimetra;
@@ -63,10 +63,9 @@ const Outcome& vtkMimetraAlgorithm::outcome(double begin) {
       vtkDebugMacro(<< message);
     }
   };
-  const mimetra::Progress progress = [this, begin](double share) {
-    return show_progress(begin + (1 - begin) * share);
-  };
-  Call loaded = call_->loaded(progress, log);
+  const Context context =
+      Context().with_progress([this](double share) { return show_progress(share); });
+  Call loaded = call_->loaded(log, context.part(begin, 1));
   const std::vector<std::string> wanted = wanted_outputs(loaded.invocation());
   return call_->run(std::move(loaded), wanted);
 }

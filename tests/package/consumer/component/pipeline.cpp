@@ -21,12 +21,10 @@ int main() {
     for (int v = 0; v < kVertices; ++v) frames.row(f).segment<3>(3 * v) = rest.row(v);
     frames(f, 3 * 14 + 2) += 0.2 * f;
   }
-  const auto faces =
-      std::make_shared<Connectivity>(Connectivity::from_triangles(kVertices, triangles));
+  const Connectivity faces = Connectivity::from_triangles(kVertices, triangles);
   const MeshSequence source(faces, frames, Eigen::VectorXd(), rest);
-  const BlendshapeModel large(faces, 2 * rest, {{}, Eigen::MatrixXd(3 * kVertices, 0)});
-  const TransferResult result =
-      transfer(source, {{"large", large}}, {.analysis = {.decomposition = {.count = 1}}});
+  const TriMesh large{2 * rest, faces};
+  const TransferResult result = transfer(source, {{"large", large}}, {.analysis = {.count = 1}});
   const Frames pose = result.targets.front().solution.sequence->read(3, 1);
   const double lifted = pose(0, 3 * 14 + 2) - 2 * rest(14, 2);
   return result.regions->regions.size() == 1 && std::abs(lifted - 1.2) < 0.3 ? 0 : 1;

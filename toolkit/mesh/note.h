@@ -55,9 +55,6 @@ struct Note {
 /// Called with each note, from the thread that computes.
 using Notes = std::function<void(const Note&)>;
 
-/// Calls `notes` if there is one.
-void note(const Notes& notes, std::string text, Topic topic = Topic::other);
-
 /// An option that does not fit the data or another option.
 class OptionError : public MismatchError {
  public:

@@ -8,14 +8,13 @@
 #include "plugins/c/described_table.h"
 #include "plugins/c/failure.h"
 #include "plugins/c/mimetra.h"
-#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/operations/operation.h"
 
 struct mimetra_context {
   std::shared_ptr<const mimetra::DescribedTable> table;
   mimetra::Log log = {};
-  mimetra::Progress progress = {};
-  int threads = 0;
+  mimetra::Context context = {};
   std::string message = {};
 
   mimetra_status fail(const std::exception_ptr& error) noexcept {
