@@ -17,7 +17,13 @@ using testing::ThrowsMessage;
 enum class Room { open, closed };
 
 constexpr std::string_view choice_name(Room value) {
-  return value == Room::open ? "open" : "closed";
+  switch (value) {
+    case Room::open:
+      return "open";
+    case Room::closed:
+      return "closed";
+  }
+  return {};
 }
 
 /// A call with values of these parameters, and the input "map".

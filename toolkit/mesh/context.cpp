@@ -20,6 +20,8 @@ class NoOthers : public Ranks {
   void meet(const std::function<bool()>&) const override {}
 };
 
+const NoOthers kAlone{};
+
 }  // namespace
 
 struct Context::Shared {
@@ -91,7 +93,7 @@ Context Context::quiet() const {
 
 Context Context::without_ranks() const {
   if (ranks().count() == 1) return *this;
-  return changed([](Shared& shared) { shared.ranks = nullptr; });
+  return with_ranks(kAlone);
 }
 
 Context Context::serial() const {
@@ -103,8 +105,7 @@ std::optional<double> Context::memory() const {
 }
 
 const Ranks& Context::ranks() const {
-  static const NoOthers alone;
-  return shared_ && shared_->ranks ? *shared_->ranks : alone;
+  return shared_ && shared_->ranks ? *shared_->ranks : kAlone;
 }
 
 void Context::report(double share) const {

@@ -338,7 +338,7 @@ Paths write_text(const WriteRequest& request, const std::string& text) {
   });
 }
 
-Paths write_document(const Data& document, const WriteRequest& request) {
+Paths write_document(const Data& document, const WriteRequest& request, const Context&) {
   return write_text(request, std::get<Document>(document).text);
 }
 
