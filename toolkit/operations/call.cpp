@@ -78,7 +78,10 @@ void check_kind(const Operation& operation, const Input& input, const Data& data
 Call::Call(const OperationTable& table, CallRequest request)
     : table_(table), request_(std::move(request)) {
   check_inputs();
-  check_exclusions();
+  check_exclusions([this](const std::string& name) {
+    return request_.given.contains(name) || request_.named.contains(name) ||
+           request_.wanted.contains(name) || request_.destinations.contains(name);
+  });
   check_parameters_of_files();
   check_outputs();
 }
@@ -111,11 +114,7 @@ void Call::check_inputs() const {
   }
 }
 
-void Call::check_exclusions() const {
-  const auto has_value = [this](const std::string& name) {
-    return request_.given.contains(name) || request_.named.contains(name) ||
-           request_.wanted.contains(name) || request_.destinations.contains(name);
-  };
+void Call::check_exclusions(const HasValue& has_value) const {
   const auto found = refusal(request_.operation->exclusions, request_.parameters, has_value);
   if (found) throw UsageError(*found);
 }
@@ -316,6 +315,10 @@ void Call::give(const std::string& input, NamedData data) {
 
 const Outcome& Call::run() {
   const Stopwatch stopwatch;
+  // Hosts may have given and asked for more since.
+  check_exclusions([this](const std::string& name) {
+    return invocation_.has_input(name) || invocation_.wants(name);
+  });
   check_same_inputs(finished_.inputs, invocation_.context);
   reading_files(request_, [this] { outcome_ = request_.operation->run(invocation_); });
   finished_.run_seconds = stopwatch.seconds();

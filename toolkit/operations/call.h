@@ -91,7 +91,7 @@ class Call {
   bool helps_another() const;
   std::optional<Destination> destination_of(const Output& output) const;
   void check_inputs() const;
-  void check_exclusions() const;
+  void check_exclusions(const HasValue& has_value) const;
   void check_parameters_of_files() const;
   void check_outputs() const;
   void check_manifest() const;

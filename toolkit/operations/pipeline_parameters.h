@@ -31,8 +31,7 @@ BoundParameters<DistanceOptions> distance_parameters();
 /// -k, by default as many as `defaults` has.
 BoundParameters<AnalysisOptions> count_parameters(const AnalysisOptions& defaults = {});
 /// All others of a decomposition but for its rest pose, with those of distances, and with --only
-/// and
-/// --without, which name vertices of the sequence.
+/// and --without, which name vertices of the sequence.
 BoundParameters<AnalysisOptions> analysis_parameters();
 /// --select, --triangles, --radius, --region and --coverage.
 BoundParameters<RegionChoiceOptions> region_parameters();

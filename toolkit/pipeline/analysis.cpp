@@ -274,8 +274,10 @@ Analysis analyse(const Source& source, const AnalysisOptions& options, const Con
   const Stopwatch stopwatch;
   check_options(options);
   const bool reference = options.compatibility != Compatibility::none;
-  if (reference && options.tolerance != DecompositionOptions::kUsualTolerance) {
-    throw std::invalid_argument("tolerance: a compatibility runs all iterations");
+  if (reference && options.tolerance != 0 &&
+      options.tolerance != DecompositionOptions::kUsualTolerance) {
+    throw std::invalid_argument(
+        "tolerance: with a compatibility all iterations run; leave the tolerance out");
   }
   const std::shared_ptr<const FrameSource> sequence = work_of(source, options);
   const FrameSource& work = *sequence;

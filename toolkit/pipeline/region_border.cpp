@@ -183,7 +183,7 @@ Selection bordered_selection(const Regions& regions, const Target& target,
     check_option(options, SolveOptions::kFalloff);
     check_full_weight(target.name, weights);
     const SurfaceDistances distances =
-        distances_along(model.neutral(), model.triangles(), of_distances, context);
+        distances_along(model.neutral(), model.triangles(), of_distances, context.quiet());
     weights = fading_out(weights, model.triangles(), weld,
                          options.falloff->in(size_of_border(target, weights, moving)),
                          [&distances](std::span<const VertexIndex> sources) {

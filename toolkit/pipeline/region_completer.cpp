@@ -79,8 +79,12 @@ Regions RegionCompleter::operator()(const Regions& regions, const Target& target
     return regions;
   if (!search_) {
     if (!distances_) {
-      distances_ = [made = distances_along(rest_, triangles_, of_distances_, context)](
-                       std::span<const VertexIndex> sources) { return made.once(sources); };
+      distances_ =
+          [rest = rest_, triangles = triangles_, how = of_distances_, context,
+           made = std::optional<SurfaceDistances>()](std::span<const VertexIndex> sources) mutable {
+            if (!made) made = distances_along(rest, triangles, how, context);
+            return made->once(sources);
+          };
     }
     search_.emplace(rest_, triangles_, distances_, radius_, inside_);
   }

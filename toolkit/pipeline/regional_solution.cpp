@@ -13,7 +13,7 @@ RegionShares shares_on(const BlendshapeModel& model,
                        const std::vector<std::vector<VertexIndex>>& regions,
                        const RegionalOptions& options, const Context& context) {
   const SurfaceDistances distances =
-      distances_along(model.neutral(), model.triangles(), options.distances, context);
+      distances_along(model.neutral(), model.triangles(), options.distances, context.quiet());
   std::vector<VertexIndex> inside;
   for (const std::vector<VertexIndex>& region : regions) {
     inside.insert(inside.end(), region.begin(), region.end());
