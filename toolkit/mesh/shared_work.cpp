@@ -14,7 +14,7 @@ std::span<double> numbers_of(Eigen::MatrixXd& matrix) {
   return {matrix.data(), static_cast<std::size_t>(matrix.size())};
 }
 
-/// Blocks of so many numbers that a process holds at once.
+/// Number of blocks, each of `numbers` numbers, that a process holds at once.
 int dealt_blocks(Eigen::Index numbers) {
   constexpr std::size_t kBytes = std::size_t{64} << 20;
   const std::size_t block =
@@ -22,7 +22,7 @@ int dealt_blocks(Eigen::Index numbers) {
   return static_cast<int>(std::clamp<std::size_t>(kBytes / block, 2, 32));
 }
 
-/// The tree over all runs, some of which this process computes.
+/// Binary tree over all runs. This process computes some of the runs.
 class RunTree {
  public:
   RunTree(int runs, const Ranks& ranks, const Context::Join& join)
@@ -34,8 +34,8 @@ class RunTree {
 
   const IndexRange& own() const { return own_; }
 
-  /// Takes the result of an own run, and joins it upwards until another half is
-  /// missing or another process takes part. May be called from several threads.
+  /// Takes the result of an own run, and joins it upwards until the other half is missing or
+  /// belongs to another process. Several threads may call it.
   void add(int run, Eigen::MatrixXd result) {
     std::unique_lock lock(mutex_);
     results_[run] = std::move(result);
@@ -44,8 +44,7 @@ class RunTree {
       const int left = run / (2 * half) * (2 * half), right = left + half;
       if (right >= runs()) continue;
       if (!is_own(left, half) || complete_[run == left ? right : left] != half) return;
-      // The thread that completes a half last joins it: no other touches the
-      // two.
+      // The thread that completes the second half joins both: no other thread touches them.
       lock.unlock();
       join_own(left, right);
       lock.lock();
@@ -53,9 +52,8 @@ class RunTree {
     }
   }
 
-  /// Joins the nodes of several processes. Each process walks through them in
-  /// the same order, so two that wait for each other are always at the same
-  /// node.
+  /// Joins the nodes of several processes. Each process walks through them in the same order, so
+  /// two that wait for each other are always at the same node.
   void join_processes() {
     for (int half = 1; half < runs(); half *= 2) {
       for (int left = 0; left + half < runs(); left += 2 * half) {

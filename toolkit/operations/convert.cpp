@@ -129,9 +129,8 @@ void check_weights(const Invocation& invocation, const FrameSource& frames) {
 std::shared_ptr<const FrameSource> read_by_all(std::shared_ptr<const FrameSource> frames,
                                                const Context& context) {
   if (context.ranks().rank() == 0) return stored(std::move(frames), context);
-  if (!frames->is_quick())
-    for_each_block(
-        *frames, [](int, const Frames&) {}, context);
+  const auto read_only = [](int, const Frames&) {};
+  if (!frames->is_quick()) for_each_block(*frames, read_only, context);
   return frames;
 }
 

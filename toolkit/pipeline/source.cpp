@@ -20,14 +20,13 @@ namespace {
 using Motion = std::variant<HeadMotion, std::vector<RigidTransform>>;
 using Shared = std::shared_ptr<const FrameSource>;
 
-/// Keeping the frames of a source that is slow to read, as a part of its progress.
+/// Share of the progress for storing the frames of a source that is slow to read.
 constexpr double kStoringShare = 0.3;
 
-/// A head that turns by more than that, in degrees, is no matter of a moving jaw, which reads as
-/// two.
+/// A head turns if it turns by more than this, in degrees. A moving jaw looks like 2 degrees.
 constexpr double kTurning = 10;
 
-/// What is to be taken out, and why.
+/// The motion to take out, and the reason.
 struct MotionChoice {
   Motion motion;
   std::string_view reason;
@@ -48,17 +47,17 @@ bool takes_out(const Motion& motion) {
   return !fitted || *fitted != HeadMotion::none;
 }
 
-/// A joint motion that nobody asked for is taken where it predicts vertices that were held out so
-/// many times as well: on faces that move everywhere it does so 4 to 9 times as well, on heads
-/// with still vertices 0.9 to 1.1 times.
+/// A joint motion that nobody asked for must predict held-out vertices this many times as well as
+/// the stable one. On faces that move everywhere it is 4 to 9 times as good, on heads with still
+/// vertices 0.9 to 1.1 times.
 constexpr double kJointGain = 2;
 
 bool predicts_better(const JointMotion& joint) {
   return joint.held_out && kJointGain * joint.held_out->joint < joint.held_out->stable;
 }
 
-/// Finds what the stillest vertices tell, and the motion together with expressions where that is
-/// asked for or better.
+/// Finds the motion of the stillest vertices, and the joint motion if it is asked for or may be
+/// better.
 void find_stable_or_joint(Source& source, const MotionChoice& choice, bool is_joint,
                           const JointSearch& joint_search, const Context& context) {
   StableMotion stable = stable_motion(*source.sequence, context);
@@ -120,8 +119,8 @@ Shared with_asked_rest(Shared sequence, const SourceOptions& options, const Cont
   return sequence;  // the mean is that of the aligned frames
 }
 
-/// Throws MismatchError for a rest pose in another unit than the frames: all of their deformation
-/// would be that.
+/// Throws MismatchError for a rest pose in another unit than the frames, which would hide all
+/// deformation.
 void check_size_of_rest(const FrameSource& sequence, const std::string& name) {
   const std::vector<VertexIndex> surface = surface_vertices(sequence.rest(), sequence.triangles());
   const double of_rest = spread(sequence.rest()(surface, Eigen::all));
@@ -140,7 +139,7 @@ std::string_view name_of(const Motion& motion) {
   return fitted ? choice_name(*fitted) : "given";
 }
 
-/// Says how large the motion is: the largest of all frames.
+/// Records the largest rotation and translation of all frames.
 void measure_motion(Source& source) {
   HeadMotionTaken& taken = source.head_motion;
   const Eigen::Vector3d center = source.sequence->rest().colwise().mean();
@@ -155,14 +154,14 @@ std::string in_percent(double share) {
   return readable(100 * share, 2) + " %";
 }
 
-/// What was held out, for a note.
+/// Both errors on held-out vertices, for a note.
 std::string comparison(const HeldOutErrors& errors) {
   return "vertices that were held out of the fit are predicted to " + in_percent(errors.joint) +
          " of the size together with the target's expressions, to " + in_percent(errors.stable) +
          " by the stillest vertices";
 }
 
-/// Says where no vertex is still enough to tell the motion, and what was done then.
+/// Notes that no vertex is still enough to tell the motion, and what was done about it.
 void note_uncertainty(const MotionChoice& choice, const Source& source,
                       const SourceOptions& options, const Context& context) {
   const HeadMotionTaken& motion = source.head_motion;
@@ -179,8 +178,8 @@ void note_uncertainty(const MotionChoice& choice, const Source& source,
   context.note(text, is_joint ? Topic::joint_motion : Topic::uncertain_motion);
 }
 
-/// Says where frames are another size or elsewhere than the rest pose, by a motion of the whole
-/// head that was not taken out; whether they are.
+/// Notes frames that differ from the rest pose in size, or by a motion of the whole head that was
+/// not taken out. Returns whether they do.
 bool note_whole_motion(const MotionChoice& choice, const Source& source,
                        const SourceOptions& options, const Context& context) {
   const WholeMotion whole = whole_motion(*source.sequence, context);
@@ -202,7 +201,7 @@ bool note_whole_motion(const MotionChoice& choice, const Source& source,
   return true;
 }
 
-/// Says where frames still move as a whole without the motion that was given; whether they do.
+/// Notes frames that still move as a whole without the given motion. Returns whether they do.
 bool note_given_motion(const Source& source, const SourceOptions& options, const Context& context) {
   const WholeMotion whole = whole_motion(*without_motion(source.sequence, source.motion), context);
   if (!whole.moves()) return false;
@@ -215,8 +214,8 @@ bool note_given_motion(const Source& source, const SourceOptions& options, const
   return true;
 }
 
-/// Says what nobody asked for: that motion was taken out, or that the head moves and it was not;
-/// whether frames are elsewhere than the rest pose.
+/// Notes a motion that was taken out, or left in, without being asked for. Returns whether frames
+/// are elsewhere than the rest pose.
 bool note_motion(const MotionChoice& choice, const Source& source, const SourceOptions& options,
                  const Context& context) {
   if (std::holds_alternative<std::vector<RigidTransform>>(choice.motion)) {
@@ -232,8 +231,8 @@ bool note_motion(const MotionChoice& choice, const Source& source, const SourceO
   return false;
 }
 
-/// Says where a neutral is likely not this face's: all that two faces differ by would be taken for
-/// its deformation.
+/// Notes a neutral that is likely another face's: the difference between two faces would count as
+/// deformation.
 void note_other_face(const Source& source, const SourceOptions& options, const Context& context) {
   const RestBeyondFrames rest = rest_beyond_frames(source.sequence, context);
   if (rest.is_of_other_face()) {
@@ -241,7 +240,7 @@ void note_other_face(const Source& source, const SourceOptions& options, const C
   }
 }
 
-/// Says which frames can be no poses of the mesh: they take regions over, and targets follow them.
+/// Notes frames that cannot be poses of the mesh: regions form around them, and targets follow.
 void note_odd_frames(const FrameSource& sequence, const SourceOptions& options,
                      const Context& context) {
   const std::vector<FrameShape> shapes = frame_shapes(sequence, context);
@@ -255,7 +254,7 @@ Shared kept(Shared sequence, const Context& context) {
   return stored(std::move(sequence), context.part(0, kStoringShare));
 }
 
-/// True for a shape that was given, and for the sequence's own where none was asked for.
+/// True for a given shape, and for the sequence's own neutral if no rest pose is asked for.
 bool knows_neutral(const FrameSource& sequence, const SourceOptions& options) {
   if (!options.rest) return sequence.rest_is_known();
   const auto* word = std::get_if<SourceRest>(&*options.rest);
@@ -278,7 +277,7 @@ Positions asked_rest(const FrameSource& sequence, const SourceOptions& options) 
 
 Source prepare_source(Shared sequence, const SourceOptions& options, const JointSearch& joint,
                       const Context& context) {
-  // Whether the head moves is judged by what is known of the sequence itself.
+  // The given sequence, not the one with the asked rest pose, decides whether the head moves.
   const MotionChoice choice = motion_of(*sequence, options);
   const auto* asked = std::get_if<HeadMotion>(&choice.motion);
   if (asked && *asked == HeadMotion::joint && !joint) {
