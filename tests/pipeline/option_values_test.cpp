@@ -218,10 +218,12 @@ TEST_F(OptionValues, OfSolvesCount) {
     const auto mesh = [&](const SolveOptions& options) {
       return compute({"mesh", mesh_}, options);
     };
-    expect_all_count<SolveOptions>({{{}, actor},
-                                    {{.per_region = true}, actor},
-                                    {{.space = Space::vertex}, actor},
-                                    {{.outside = Outside::identity}, mesh}});
+    expect_all_count<SolveOptions>(
+        {{{}, actor},
+         {{.per_region = true}, actor},
+         {{.space = Space::vertex}, actor},
+         {{.outside = Outside::identity}, mesh},
+         {{.outside = Outside::identity, .anchor = Anchor::vertex, .anchor_vertex = 3}, mesh}});
   }
 }
 

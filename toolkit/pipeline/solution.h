@@ -111,12 +111,16 @@ struct SolveOptions {
   static constexpr Option kOutsideSmoothness{"outside_smoothness",
                                              &SolveOptions::outside_smoothness,
                                              VertexTransferOptions::kOutsideSmoothness.range};
+  static constexpr Option kEdges{"edges", &SolveOptions::edges};
+  static constexpr Option kAnchor{"anchor", &SolveOptions::anchor};
+  static constexpr Option kAnchorVertex{"anchor_vertex", &SolveOptions::anchor_vertex,
+                                        VertexTransferOptions::kAnchorVertex.range};
   static constexpr Option kRegionRidge{"region_ridge", &SolveOptions::region_ridge,
                                        LocalWeightsOptions::kRidge.range};
   static constexpr auto declared() {
-    return std::tuple(kSpace, kAxes, kSmoothness, kRidge, kSparsity, kSymmetry, kExclusive,
-                      kTriangleWeight, kOutside, kOutsideWeight, kOutsideSmoothness, kPerRegion,
-                      kFalloff, kRegionRidge);
+    return std::tuple(kSpace, kAxes, kEdges, kSmoothness, kRidge, kSparsity, kSymmetry, kExclusive,
+                      kTriangleWeight, kOutside, kOutsideWeight, kOutsideSmoothness, kAnchor,
+                      kAnchorVertex, kPerRegion, kFalloff, kRegionRidge);
   }
 };
 
