@@ -7,10 +7,10 @@
 /// those of toolkit/operations, toolkit/vtk, toolkit/drawing, toolkit/pictures and fitting.
 
 // The pipeline: what the command does, on values.
-#include "toolkit/pipeline/evaluation.h"
+#include "toolkit/pipeline/measure.h"
+#include "toolkit/pipeline/region_choice.h"
 #include "toolkit/pipeline/retarget.h"
 #include "toolkit/pipeline/rig.h"
-#include "toolkit/pipeline/simplified_regions.h"
 #include "toolkit/pipeline/transfer.h"
 
 // Meshes, sequences and fields.
@@ -30,8 +30,7 @@
 
 // Models with expressions and identities.
 #include "toolkit/model/animation.h"
-#include "toolkit/model/morphable_model.h"
-#include "toolkit/model/regional_animation.h"
+#include "toolkit/model/blendshape_model.h"
 #include "toolkit/model/retargeting.h"
 #include "toolkit/model/weight_rules.h"
 
@@ -40,16 +39,13 @@
 #include "geodesic/heat_geodesics.h"
 #include "geodesic/support_map.h"
 #include "toolkit/regions/falloff.h"
-#include "toolkit/regions/partition.h"
 #include "toolkit/regions/regions.h"
 #include "toolkit/splocs/decomposition.h"
 
 // Faces of another numbering or topology.
 #include "toolkit/correspondence/automatic_markers.h"
 #include "toolkit/correspondence/correspondence.h"
-#include "toolkit/correspondence/found_correspondence.h"
 #include "toolkit/correspondence/pairing.h"
-#include "toolkit/correspondence/renumbered_frames.h"
 #include "toolkit/correspondence/renumbering.h"
 
 // Transfer of deformation, and its error.

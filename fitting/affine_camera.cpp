@@ -1,12 +1,17 @@
 #include "fitting/affine_camera.h"
 
 #include <cmath>
+#include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
 
+#include "fitting/landmark_mapping.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/mesh/rounding.h"
 
 namespace mimetra {
 
@@ -14,15 +19,14 @@ namespace {
 
 /// Below this share of the first singular value the third says nothing about depth.
 constexpr double kCoplanar = 1e-3;
-constexpr Eigen::Index kFewest = 4;
 
 }  // namespace
 
 AffineCamera estimate_affine_camera(const ModelPoints& points, const ImagePoints& image) {
   const Eigen::Index count = points.rows();
-  if (count < kFewest) {
-    throw MismatchError(std::to_string(count) +
-                        " landmarks, an affine camera needs at least 4 that are not coplanar");
+  if (count < kLandmarksOfCamera) {
+    throw MismatchError(std::to_string(count) + " landmarks, an affine camera needs at least " +
+                        std::to_string(kLandmarksOfCamera) + " that are not coplanar");
   }
   fix_product_blocking();
   // Normalised coordinates are centred on both sides. Their scales cancel in the closed form: a
@@ -59,6 +63,49 @@ ImagePoints project(const AffineCamera& camera, const ModelPoints& points,
 double rms_radius(const Eigen::MatrixXd& points) {
   const auto centred = points.rowwise() - points.colwise().mean();
   return std::sqrt(centred.squaredNorm() / double(points.rows()));
+}
+
+ImagePoints points_of_frame(const Frames& landmarks, Eigen::Index frame) {
+  const Eigen::RowVectorXd row = landmarks.row(frame);
+  return row.reshaped<Eigen::RowMajor>(row.size() / 2, 2);
+}
+
+std::vector<Eigen::Index> seen_landmarks(const Frames& landmarks, Eigen::Index frame) {
+  std::vector<Eigen::Index> seen;
+  for (Eigen::Index i = 0; i < landmarks.cols() / 2; ++i) {
+    if (landmarks.row(frame).segment<2>(2 * i).allFinite()) seen.push_back(i);
+  }
+  return seen;
+}
+
+Eigen::Matrix3d head_rotation(const AffineCamera& camera) {
+  const Eigen::Matrix<double, 2, 3> linear = camera.leftCols<3>();
+  const Eigen::JacobiSVD<Eigen::Matrix<double, 2, 3>> svd(
+      linear, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d seen;
+  seen.topRows<2>() = svd.matrixU() * svd.matrixV().leftCols<2>().transpose();
+  seen.row(2) = seen.row(0).cross(seen.row(1));
+  // Images have y down, and so z away from the viewer.
+  return Eigen::Vector3d(1, -1, -1).asDiagonal() * seen;
+}
+
+MeshSequence turned_as_seen(const MeshSequence& sequence, const std::vector<AffineCamera>& cameras,
+                            const LandmarkVertices& landmarks) {
+  if (static_cast<int>(cameras.size()) != sequence.frames()) {
+    throw std::invalid_argument(std::to_string(cameras.size()) + " cameras for " +
+                                std::to_string(sequence.frames()) + " frames");
+  }
+  const Eigen::RowVector3d middle = sequence.rest().colwise().mean();
+  Frames frames = sequence.positions();
+  const Eigen::Matrix3d to_own_axes = looking_ahead(sequence.rest(), landmarks).transpose();
+  for (int f = 0; f < sequence.frames(); ++f) {
+    Eigen::Map<Positions> frame(frames.row(f).data(), sequence.vertices(), 3);
+    const Eigen::Matrix3d rotation =
+        to_own_axes * head_rotation(cameras[static_cast<std::size_t>(f)]);
+    const Positions turned = (frame.rowwise() - middle) * rotation.transpose();
+    frame = turned.rowwise() + middle;
+  }
+  return sequence.with_frames(std::move(frames));
 }
 
 }  // namespace mimetra

@@ -5,8 +5,8 @@
 
 #include "fitting/fitted_frame.h"
 #include "toolkit/model/box_least_squares.h"
-#include "toolkit/model/second_differences.h"
 #include "toolkit/model/smooth_weights.h"
+#include "toolkit/model/smoothness.h"
 
 namespace mimetra {
 

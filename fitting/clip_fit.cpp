@@ -8,6 +8,15 @@
 
 namespace mimetra {
 
+NeutralDistance neutral_distance(const MorphableModel& model, const Eigen::VectorXd& a,
+                                 const Eigen::VectorXd& b) {
+  const Eigen::VectorXd distances =
+      (model.person(a).neutral() - model.person(b).neutral()).rowwise().norm();
+  const Eigen::RowVector3d box =
+      model.mean().colwise().maxCoeff() - model.mean().colwise().minCoeff();
+  return {distances.mean() / box.maxCoeff(), distances.maxCoeff() / box.maxCoeff()};
+}
+
 namespace {
 
 /// In fewer frames the neutrals of one person are up to 2.8 % apart.
@@ -41,9 +50,7 @@ std::map<int, std::vector<int>> frames_of_places(const MappedLandmarks& mapped,
   std::vector<std::vector<FaceBox>> boxes(static_cast<std::size_t>(fit.frames()));
   for (int f = 0; f < fit.frames(); ++f) {
     if (fit.landmarks[f] == 0) continue;
-    const Eigen::RowVectorXd row = mapped.points.row(f);
-    boxes[static_cast<std::size_t>(f)].push_back(
-        box_around(row.reshaped<Eigen::RowMajor>(row.size() / 2, 2)));
+    boxes[static_cast<std::size_t>(f)].push_back(box_around(points_of_frame(mapped.points, f)));
   }
   std::map<int, std::vector<int>> frames;
   int last = 0;

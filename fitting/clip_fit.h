@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "fitting/fit_verdict.h"
 #include "fitting/landmark_fitter.h"
 #include "fitting/landmark_mapping.h"
+#include "toolkit/io/fit_file.h"
 #include "toolkit/mesh/context.h"
 
 /// A clip that is fitted as a whole and in parts. Internal to fit_operation.h.
@@ -35,6 +35,19 @@ class ClipFit {
   bool outline_;
   LandmarkFitter fitter_;
 };
+
+/// Distances of the vertices of two neutrals, as shares of the longest side of the model's mean.
+struct NeutralDistance {
+  double mean = 0;
+  double largest = 0;
+};
+
+NeutralDistance neutral_distance(const MorphableModel& model, const Eigen::VectorXd& a,
+                                 const Eigen::VectorXd& b);
+
+/// Above this share of the longest side, on average, the neutrals of a clip's halves are those of
+/// two people. Of one person they are 0.4 to 1.2 % apart, of two 2.5 % and more.
+constexpr double kTwoPeople = 0.02;
 
 /// Whether a clip shows one person: distances of the neutrals that parts of it give.
 struct ClipPeople {

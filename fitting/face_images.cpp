@@ -1,17 +1,29 @@
 #include "fitting/face_images.h"
 
 #include <algorithm>
+#include <condition_variable>
+#include <cstddef>
+#include <exception>
 #include <iterator>
-#include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
+#include <utility>
+#include <vector>
 
+#include "fitting/face_finder.h"
 #include "fitting/followed_face.h"
 #include "fitting/image_codec.h"
 #include "fitting/landmark_formats.h"
-#include "fitting/recording_search.h"
+#include "fitting/landmark_mapping.h"
+#include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/parallel.h"
+#include "toolkit/operations/image.h"
 
 namespace mimetra {
 
@@ -19,7 +31,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Eigen::Index kLandmarks = 68;
 constexpr const char* kTerms =
     "the 68-point model was trained on photographs for non-commercial use only (iBUG 300-W)";
 
@@ -102,15 +113,182 @@ void check_some_face(const FaceTrack& track) {
           "; a face must look towards the camera and be at least 80 pixels wide");
 }
 
+/// Frames from one that is searched everywhere to the next, a second of most videos. Those between
+/// depend on it and not on frames before, so that such chunks are searched side by side.
+constexpr int kChunkFrames = 30;
+
+/// Frames wait in this many bytes at most, but always one for each thread.
+constexpr std::size_t kWaitingBytes = std::size_t{256} << 20;
+
+/// Hands frames that were read in order to those who search chunks of them.
+class WaitingFrames {
+ public:
+  explicit WaitingFrames(int threads) : least_(static_cast<std::size_t>(threads)) {}
+
+  /// Waits for room.
+  void put(int frame, Image image) {
+    std::unique_lock lock(mutex_);
+    const std::size_t bytes = sizeof(Color) * image.pixels.size();
+    changed_.wait(lock, [&] {
+      return is_stopped_ || frames_.size() <= least_ ||
+             (frames_.size() + 1) * bytes <= kWaitingBytes;
+    });
+    frames_.emplace(frame, std::move(image));
+    changed_.notify_all();
+  }
+  /// Waits for the frame; none where it will not come.
+  std::optional<Image> take(int frame) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return is_stopped_ || frames_.contains(frame); });
+    if (is_stopped_) return std::nullopt;
+    Image image = std::move(frames_.extract(frame).mapped());
+    changed_.notify_all();
+    return image;
+  }
+  /// Nobody waits any longer.
+  void stop() {
+    const std::scoped_lock lock(mutex_);
+    is_stopped_ = true;
+    changed_.notify_all();
+  }
+  /// The lowest chunk that nobody has begun.
+  int next_chunk() {
+    const std::scoped_lock lock(mutex_);
+    return chunk_++;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::map<int, Image> frames_;
+  std::size_t least_;
+  int chunk_ = 0;
+  bool is_stopped_ = false;
+};
+
+/// Searches the frames of a chunk, one after the other.
+class ChunkSearch {
+ public:
+  ChunkSearch(const FaceFinder& finder, double min_confidence)
+      : finder_(finder), min_confidence_(min_confidence) {}
+
+  std::vector<Face> faces(const Image& image) {
+    std::vector<Face> found;
+    if (!last_.empty()) found = finder_.faces_near(image, last_);
+    std::vector<Face> trusted = trusted_of(found);
+    if (last_.empty() || trusted.size() < last_.size()) {
+      found = finder_.faces(image);
+      trusted = trusted_of(found);
+    }
+    last_ = std::move(trusted);
+    return found;
+  }
+
+ private:
+  std::vector<Face> trusted_of(std::vector<Face> faces) const {
+    std::erase_if(faces, [this](const Face& face) { return face.confidence < min_confidence_; });
+    return faces;
+  }
+
+  const FaceFinder& finder_;
+  double min_confidence_;
+  std::vector<Face> last_;
+};
+
+/// All frames on the calling thread.
+void search_here(const ImageSequence& images, const FaceFinder& finder, double min_confidence,
+                 std::vector<FacesInImage>& found, const Context& context) {
+  std::optional<ChunkSearch> search;
+  for (int frame = 0; frame < images.frames(); ++frame) {
+    if (frame % kChunkFrames == 0) search.emplace(finder, min_confidence);
+    found[static_cast<std::size_t>(frame)].faces = search->faces(images.image(frame));
+    context.report(double(frame + 1) / images.frames());
+  }
+}
+
+/// Threads that search chunks until there are none left.
+class Searchers {
+ public:
+  Searchers(int count, int threads, const FaceFinder& finder, double min_confidence,
+            std::vector<FacesInImage>& found)
+      : waiting(threads), failures_(static_cast<std::size_t>(threads)) {
+    for (std::exception_ptr& failure : failures_) {
+      threads_.emplace_back([this, count, &finder, min_confidence, &found, &failure] {
+        try {
+          while (search_chunk(waiting.next_chunk(), count, finder, min_confidence, found)) continue;
+        } catch (...) {
+          failure = std::current_exception();
+          waiting.stop();
+        }
+      });
+    }
+  }
+  ~Searchers() { waiting.stop(); }  // before the threads are waited for
+  Searchers(const Searchers&) = delete;
+  Searchers& operator=(const Searchers&) = delete;
+
+  /// Waits until all is searched. Throws what a search threw.
+  void finish() {
+    for (std::jthread& thread : threads_) thread.join();
+    for (const std::exception_ptr& failure : failures_) {
+      if (failure) std::rethrow_exception(failure);
+    }
+  }
+
+  WaitingFrames waiting;
+
+ private:
+  /// False where there is no such chunk, or the search was stopped.
+  bool search_chunk(int chunk, int count, const FaceFinder& finder, double min_confidence,
+                    std::vector<FacesInImage>& found) {
+    const long long first = static_cast<long long>(chunk) * kChunkFrames;
+    const int end = static_cast<int>(std::min<long long>(first + kChunkFrames, count));
+    ChunkSearch search(finder, min_confidence);
+    for (int frame = static_cast<int>(std::min<long long>(first, count)); frame < end; ++frame) {
+      const std::optional<Image> image = waiting.take(frame);
+      if (!image) return false;
+      found[static_cast<std::size_t>(frame)].faces = search.faces(*image);
+    }
+    return first < count;
+  }
+
+  std::vector<std::exception_ptr> failures_;
+  std::vector<std::jthread> threads_;
+};
+
+/// The faces of each frame of a recording, which one thread reads in order while others search:
+/// near those of the frame before, and everywhere in each chunk's first frame, and where fewer are
+/// found than in the frame before. Throws as ImageSequence::image; Cancelled.
+std::vector<FacesInImage> faces_of_recording(const ImageSequence& images, const FaceFinder& finder,
+                                             double min_confidence, const Context& context) {
+  const int count = images.frames(), chunks = (count + kChunkFrames - 1) / kChunkFrames;
+  std::vector<FacesInImage> found(static_cast<std::size_t>(count));
+  for (int frame = 0; frame < count; ++frame) {
+    found[static_cast<std::size_t>(frame)].image = images.name(frame);
+  }
+  const int all = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int threads = std::min(context.threads() > 0 ? context.threads() : all, chunks);
+  if (threads == 1) {
+    search_here(images, finder, min_confidence, found, context);
+    return found;
+  }
+  Searchers searchers(count, threads, finder, min_confidence, found);
+  for (int frame = 0; frame < count; ++frame) {
+    searchers.waiting.put(frame, images.image(frame));
+    context.report(double(frame + 1) / count);
+  }
+  searchers.finish();
+  return found;
+}
+
 }  // namespace
 
 FaceTrack follow_face(const std::vector<FacesInImage>& frames, double min_confidence) {
   check_options(FaceOptions{.min_confidence = min_confidence});
   const auto count = static_cast<Eigen::Index>(frames.size());
   FaceTrack track;
-  track.landmarks.names = numbered_names(kLandmarks);
-  track.landmarks.points.setConstant(count, 2 * kLandmarks,
-                                     std::numeric_limits<double>::quiet_NaN());
+  track.landmarks.names = numbered_names(kFaceLandmarks);
+  track.landmarks.points.setConstant(count, 2 * kFaceLandmarks, kUnseen);
   track.landmarks.confidence.setZero(count);
   std::vector<std::vector<Face>> confident;
   std::vector<std::vector<FaceBox>> boxes;
@@ -160,6 +338,44 @@ FaceTrack track_face(const ImageSequence& images, const FaceOptions& options,
   check_some_face(track);
   if (model == kDebianFaceModel) track.notes.insert(track.notes.begin(), kTerms);
   return track;
+}
+
+namespace {
+
+/// A hundred megabytes, for those who draw heads only.
+class FinderOnDemand {
+ public:
+  explicit FinderOnDemand(std::filesystem::path model) : model_(std::move(model)) {}
+
+  const FaceFinder& get() {
+    const std::lock_guard lock(mutex_);
+    if (!finder_) finder_.emplace(model_);
+    return *finder_;
+  }
+
+ private:
+  std::filesystem::path model_;
+  std::mutex mutex_;
+  std::optional<FaceFinder> finder_;
+};
+
+Image colored(const GreyImage& grey) {
+  Image image(grey.width, grey.height);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    image.pixels[i] = {grey.pixels[i], grey.pixels[i], grey.pixels[i]};
+  }
+  return image;
+}
+
+}  // namespace
+
+LandmarkFinder landmarks_of_drawings(const std::filesystem::path& model) {
+  const auto finder = std::make_shared<FinderOnDemand>(model);
+  return [finder](const GreyImage& drawing) -> std::optional<FoundFace> {
+    const std::vector<Face> faces = finder->get().faces(colored(drawing));
+    if (faces.empty()) return {};
+    return FoundFace{faces.front().landmarks, faces.front().confidence};
+  };
 }
 
 }  // namespace mimetra

@@ -1,14 +1,16 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "fitting/face_finder.h"
 #include "fitting/image_files.h"
+#include "toolkit/correspondence/landmark_finder.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/model/landmark_track.h"
-#include "toolkit/operations/image_sequence.h"
+#include "toolkit/operations/image.h"
 
 namespace mimetra {
 
@@ -47,5 +49,9 @@ std::string low_confidence_note(double confidence, double min_confidence);
 /// FaceFinder, ImageSequence::image and follow_face; IoError where no image shows a face;
 /// Cancelled.
 FaceTrack track_face(const ImageSequence& images, const FaceOptions& = {}, const Context& = {});
+
+/// FaceFinder as finder of landmarks in drawings of meshes: the most certain face of each. Its
+/// model is read when it is used first; that throws as FaceFinder does.
+LandmarkFinder landmarks_of_drawings(const std::filesystem::path& model = kDebianFaceModel);
 
 }  // namespace mimetra

@@ -135,15 +135,4 @@ T* allocated(T* made) {
   return made;
 }
 
-/// What an error's number means.
-std::string ffmpeg_error(int error);
-
-double seconds(std::int64_t time, AVRational base);
-
-/// A name that is a file's, whatever it looks like.
-std::string file_url(const std::filesystem::path& path);
-
-/// Reads no other file than this one. Throws IoError.
-FfmpegOwned<AVFormatContext> open_container(const std::filesystem::path& path);
-
 }  // namespace mimetra

@@ -8,28 +8,23 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
-#include "fitting/camera_distance.h"
 #include "fitting/clip_fit.h"
-#include "fitting/fit_judgement.h"
-#include "fitting/fit_pictures.h"
-#include "fitting/head_facing.h"
-#include "fitting/head_rotation.h"
+#include "fitting/fit_checks.h"
+#include "fitting/fit_verdict.h"
 #include "fitting/image_files.h"
 #include "fitting/landmark_file.h"
 #include "fitting/landmark_input.h"
 #include "fitting/landmark_mapping.h"
-#include "fitting/landmarks_of_drawings.h"
-#include "fitting/partial_frames.h"
+#include "fitting/overlay.h"
 #include "fitting/video_file.h"
-#include "fitting/video_format.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/mesh/rounding.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
-#include "toolkit/operations/formats.h"
-#include "toolkit/operations/json.h"
+#include "toolkit/operations/format.h"
+#include "toolkit/operations/reports.h"
 #include "toolkit/operations/sequence_parameters.h"
-#include "toolkit/operations/times_text.h"
 
 namespace mimetra {
 

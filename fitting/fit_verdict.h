@@ -1,14 +1,17 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "fitting/landmark_fitter.h"
+#include "fitting/affine_camera.h"
+#include "fitting/clip_fit.h"
 #include "fitting/landmark_mapping.h"
 #include "toolkit/io/fit_file.h"
+#include "toolkit/io/json_text.h"
+#include "toolkit/mesh/mesh_sequence.h"
+#include "toolkit/operations/operation.h"
 
-/// Whether what was fitted can be a person. Internal to fit_operation.h.
+/// What a fit is worth, in numbers and in words. Internal to fit_operation.h.
 namespace mimetra {
 
 /// Of a fitted identity.
@@ -22,19 +25,6 @@ struct IdentityVerdict {
 };
 
 IdentityVerdict verdict_of(const MorphableModel& model, const Eigen::VectorXd& alpha);
-
-/// Distances of the vertices of two neutrals, as shares of the longest side of the model's mean.
-struct NeutralDistance {
-  double mean = 0;
-  double largest = 0;
-};
-
-NeutralDistance neutral_distance(const MorphableModel& model, const Eigen::VectorXd& a,
-                                 const Eigen::VectorXd& b);
-
-/// Above this share of the longest side, on average, the neutrals of a clip's halves are those of
-/// two people. Of one person they are 0.4 to 1.2 % apart, of two 2.5 % and more.
-constexpr double kTwoPeople = 0.02;
 
 /// How far landmarks are from the fitted face.
 struct FitResiduals {
@@ -57,6 +47,9 @@ constexpr double kFarLandmarks = 0.12;
 /// `sequence`.
 FitResiduals residuals_of(const MeshSequence& sequence, const FittedCoefficients& fit,
                           const MappedLandmarks& mapped);
+
+/// Affine cameras that see the model's origin, and a little around it, as the fitted ones do.
+std::vector<AffineCamera> cameras_at_origin(const FittedCoefficients& fit);
 
 /// How many times as wide as high the cameras show things in which landmarks were seen, on average:
 /// 1 for images of square pixels. Affine cameras, as cameras_at_origin().
@@ -82,5 +75,48 @@ std::vector<ExpressionUse> expression_use(const Eigen::MatrixXd& beta);
 /// see, by the normals there.
 int averted_landmarks(const Positions& mesh, const Triangles& triangles,
                       const std::vector<int>& vertices, const AffineCamera& camera);
+
+/// How many of a clip's landmarks its cameras do not see, for the face is between.
+class AvertedLandmarks {
+ public:
+  /// One camera a frame of the fitted `sequence`; landmarks at `vertices`. Frames without landmarks
+  /// in `fit` do not count.
+  AvertedLandmarks(const MeshSequence& sequence, const FittedCoefficients& fit,
+                   const std::vector<int>& vertices, const std::vector<AffineCamera>& cameras);
+
+  /// Throws MismatchError where most frames' faces look away from the camera: a mirror image fits
+  /// as well, as such a face, which nobody finds landmarks of. `name` of the landmarks.
+  void require_facing(const std::string& name) const;
+
+  /// The landmarks' notes of frames, with those in which the head is turned so far that landmarks
+  /// are behind it, of which it warns; none where no frame has one.
+  std::vector<std::string> notes(const Invocation& invocation) const;
+
+ private:
+  std::vector<int> of_frames_;  ///< -1 of unseen ones
+  int landmarks_;
+};
+
+/// All of it together.
+struct Judgement {
+  IdentityVerdict identity;
+  FitResiduals residuals;
+  double stretch = 1;
+  /// Without identities, cameras take what the person's proportions are.
+  bool has_identities = true;
+  ClipPeople people;
+  std::vector<ExpressionUse> expressions;
+
+  /// `names` of the expressions.
+  Json json(const std::vector<std::string>& names) const;
+  std::string words() const;
+};
+
+/// Warns where landmarks are far from the fitted face, as in the wrong order, in all frames or
+/// some; where a clip's images are stretched, or its parts show two people; where no person is to
+/// be expected; and of expressions that are there all the time, by their `names`.
+void warn_of(const Judgement& judgement, const std::vector<std::string>& names,
+             const MappedLandmarks& mapped, const FitOptions& options,
+             const Invocation& invocation);
 
 }  // namespace mimetra

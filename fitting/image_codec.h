@@ -1,13 +1,27 @@
 #pragma once
 
-#include <filesystem>
+#include <cstdint>
 #include <string>
 
-#include "fitting/image_orientation.h"
 #include "toolkit/operations/image.h"
 
 /// Bytes of image files to pixels, where dlib is there. Internal to image_files.h.
 namespace mimetra {
+
+/// 800 MB of pixels: an image or a video's frame with more comes from a damaged header.
+constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 28;
+
+/// How stored pixels lie in the picture that is meant: columns and rows change places first, then
+/// the order of the columns, and of the rows, is turned round.
+struct Orientation {
+  bool transposed = false;
+  bool right_to_left = false;
+  bool bottom_up = false;
+  bool operator==(const Orientation&) const = default;
+};
+
+/// The picture that is meant.
+Image oriented(Image stored, const Orientation& orientation);
 
 /// What an image file says about itself.
 struct ImageHeader {

@@ -1,14 +1,12 @@
 #include "fitting/image_files.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <stdexcept>
 
 #include "fitting/image_codec.h"
 #include "toolkit/io/frame_files.h"
-#include "toolkit/io/missing_path.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"

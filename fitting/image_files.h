@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "toolkit/operations/image_sequence.h"
+#include "toolkit/operations/image.h"
 
 namespace mimetra {
 

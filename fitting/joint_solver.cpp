@@ -6,10 +6,11 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
-#include "fitting/joint_solver.h"
+#include "fitting/clip_noise.h"
+#include "fitting/face_outline.h"
 #include "toolkit/model/box_least_squares.h"
-#include "toolkit/model/second_differences.h"
 #include "toolkit/model/smooth_weights.h"
+#include "toolkit/model/smoothness.h"
 
 namespace mimetra {
 

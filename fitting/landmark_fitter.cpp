@@ -9,9 +9,9 @@
 #include <string>
 #include <utility>
 
-#include "fitting/joint_solver.h"
+#include "fitting/face_outline.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/mesh/rounding.h"
 
 namespace mimetra {
 
@@ -63,15 +63,6 @@ CameraModel camera_of(const FitOptions& options, std::size_t frames) {
   }
   if (camera == Camera::affine) return {};
   return {options.stretch, camera == Camera::perspective ? 1 / *options.focal_length : 0};
-}
-
-/// A landmark is seen where both of its coordinates are finite.
-std::vector<Eigen::Index> seen_landmarks(const Frames& points, Eigen::Index frame) {
-  std::vector<Eigen::Index> seen;
-  for (Eigen::Index i = 0; i < points.cols() / 2; ++i) {
-    if (points.row(frame).segment<2>(2 * i).allFinite()) seen.push_back(i);
-  }
-  return seen;
 }
 
 std::vector<FrameFit> results_of(const FittedClip& clip) {
@@ -255,10 +246,7 @@ ClipOutline LandmarkFitter::State::on_outline(const Frames& points, Eigen::Index
                                 std::to_string(frames) + " and x and y of each");
   }
   ClipOutline result{outline, {}};
-  for (const Eigen::Index f : indices) {
-    const Eigen::RowVectorXd row = points.row(f);
-    result.landmarks.push_back(row.reshaped<Eigen::RowMajor>(row.size() / 2, 2));
-  }
+  for (const Eigen::Index f : indices) result.landmarks.push_back(points_of_frame(points, f));
   return result;
 }
 

@@ -7,7 +7,7 @@
 #include "fitting/fit_options.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/model/morphable_model.h"
+#include "toolkit/model/blendshape_model.h"
 
 namespace mimetra {
 

@@ -1,22 +1,21 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
+#include <limits>
 #include <vector>
 
 #include "toolkit/model/landmark_track.h"
 
-/// One reader for each format. Internal to landmark_file.h.
+/// What the readers of landmarks share. Internal to landmark_file.h.
 namespace mimetra {
 
-LandmarkTrack read_pts(const std::filesystem::path& path);
-LandmarkTrack read_landmark_csv(const std::filesystem::path& path);
-LandmarkTrack read_landmark_json(const std::filesystem::path& path);
+/// A coordinate of a landmark that was not seen.
+constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
 
 /// What numbers of frames say of a track without times: its step, and what is missing.
 void number_frames(LandmarkTrack& track, const std::vector<long long>& numbers);
 
-/// "1", "2", ...: iBUG counts its landmarks so.
-std::vector<std::string> numbered_names(std::size_t count);
+/// The reader of .json files. Throws IoError.
+LandmarkTrack read_landmark_json(const std::filesystem::path& path);
 
 }  // namespace mimetra

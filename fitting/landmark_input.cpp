@@ -8,12 +8,11 @@
 
 #include "fitting/image_files.h"
 #include "fitting/landmark_file.h"
-#include "fitting/mediapipe.h"
-#include "fitting/placeholders.h"
+#include "fitting/landmark_formats.h"
 #include "fitting/video_file.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/frame_series.h"
-#include "toolkit/io/missing_path.h"
+#include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/parameter.h"
@@ -201,7 +200,7 @@ void drop_doubtful(LandmarksRead& read, const std::string& text, double min_conf
   read.frame_notes.resize(static_cast<std::size_t>(track.frames()));
   for (Eigen::Index f = 0; f < track.confidence.size(); ++f) {
     if (track.confidence[f] >= min_confidence) continue;
-    read.track.points.row(f).setConstant(std::numeric_limits<double>::quiet_NaN());
+    read.track.points.row(f).setConstant(kUnseen);
     read.frame_notes[static_cast<std::size_t>(f)] =
         low_confidence_note(track.confidence[f], min_confidence);
     ++doubtful;
@@ -226,10 +225,61 @@ std::pair<int, int> size_of(const std::string& text) {
   return {width, height};
 }
 
+/// Fewer landmarks are not a face: they have no inside, and their place says nothing.
+constexpr int kFewForAFace = 5;
+
+using Points = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>>;
+
+bool is_placeholder(const Eigen::RowVector2d& point) {
+  return point == Eigen::RowVector2d(0, 0) || point == Eigen::RowVector2d(-1, -1);
+}
+
+/// The landmarks of a frame (n x 2) that are none, by their rows.
+std::vector<Eigen::Index> placeholders_of(const Points& points) {
+  std::vector<Eigen::Index> found;
+  Eigen::RowVector2d lowest = Eigen::RowVector2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::RowVector2d highest = -lowest;
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    if (is_placeholder(points.row(i))) {
+      found.push_back(i);
+    } else if (!points.row(i).hasNaN()) {
+      lowest = lowest.cwiseMin(points.row(i));
+      highest = highest.cwiseMax(points.row(i));
+    }
+  }
+  std::erase_if(found, [&](Eigen::Index i) {
+    const auto point = points.row(i).array();
+    return (lowest.array() <= point).all() && (point <= highest.array()).all();
+  });
+  return found;
+}
+
+/// Makes NaN of landmarks at exactly (0, 0) or (-1, -1) that lie outside of the box of their
+/// frame's others, and of frames that have nothing else. Returns what to say of it, "" for nothing.
+std::string drop_placeholders(LandmarkTrack& track) {
+  if (track.landmarks() < kFewForAFace) return "";
+  int frames = 0, partly = 0;
+  for (Eigen::Index f = 0; f < track.points.rows(); ++f) {
+    Points points(track.points.row(f).data(), track.landmarks(), 2);
+    const bool was_seen = !points.array().isNaN().all();
+    const std::vector<Eigen::Index> placeholders = placeholders_of(points);
+    if (placeholders.empty()) continue;
+    for (const Eigen::Index landmark : placeholders) {
+      points.row(landmark).setConstant(kUnseen);
+    }
+    ++(was_seen && points.array().isNaN().all() ? frames : partly);
+  }
+  if (frames + partly == 0) return "";
+  std::string text = std::to_string(frames + partly) + " of " + std::to_string(track.frames()) +
+                     " frames have landmarks at (0, 0) or (-1, -1), outside of the face, which are "
+                     "taken as not seen";
+  if (frames > 0) text += "; " + std::to_string(frames) + " of them have no others";
+  return text;
+}
+
 /// No face has nearly all its landmarks so near the corner in pixels; a few may be found wrong.
 bool are_shares(const LandmarkTrack& track) {
   constexpr double kMostShare = 2, kMostWrong = 0.1;
-  constexpr int kFewForAFace = 5;
   Eigen::Index seen = 0, far = 0;
   for (Eigen::Index i = 0; i < track.points.size(); i += 2) {
     const Eigen::Map<const Eigen::Array2d> point(track.points.data() + i);
@@ -239,6 +289,15 @@ bool are_shares(const LandmarkTrack& track) {
   }
   return track.landmarks() >= kFewForAFace && seen > 0 &&
          static_cast<double>(far) <= kMostWrong * static_cast<double>(seen);
+}
+
+/// Turns shares of the image's width and height, as MediaPipe counts, into pixels.
+void scale_to_pixels(LandmarkTrack& track, int width, int height) {
+  // 0 is the image's edge there, and the middle of the first pixel here.
+  for (Eigen::Index column = 0; column < track.points.cols(); ++column) {
+    const double size = column % 2 == 0 ? width : height;
+    track.points.col(column) = track.points.col(column).array() * size - 0.5;
+  }
 }
 
 void make_pixels(LandmarksRead& read, const std::string& text,

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fitting/face_images.h"
-#include "toolkit/io/sequence_options.h"
+#include "toolkit/io/sequence_format.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/model/landmark_track.h"
 

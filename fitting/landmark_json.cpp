@@ -3,7 +3,6 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -12,6 +11,7 @@
 
 #include "fitting/followed_face.h"
 #include "fitting/landmark_formats.h"
+#include "fitting/landmark_mapping.h"
 #include "toolkit/io/frame_series.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/io/time_columns.h"
@@ -21,8 +21,6 @@
 namespace mimetra {
 
 namespace {
-
-constexpr double kUnseenPoint = std::numeric_limits<double>::quiet_NaN();
 
 /// Keys under which a frame has its face: ours, and those of MediaPipe's interfaces.
 constexpr std::array kFaceKeys = {"points",    "faceLandmarks",      "face_landmarks",
@@ -166,7 +164,7 @@ class JsonReader {
   /// A depth after x and y is left out.
   void read_point(const Json& point, const std::string& place, Points& points) const {
     if (point.is_null()) {
-      points.insert(points.end(), 2, kUnseenPoint);
+      points.insert(points.end(), 2, kUnseen);
     } else if (has_coordinates(point)) {
       read_coordinates(point["x"], point["y"], place + "/x", place + "/y", points);
     } else if (is_list_of_coordinates(point)) {
@@ -180,8 +178,8 @@ class JsonReader {
   void read_coordinates(const Json& x, const Json& y, const std::string& place_of_x,
                         const std::string& place_of_y, Points& points) const {
     const bool is_seen = !x.is_null() || !y.is_null();
-    points.push_back(is_seen ? number(x, place_of_x) : kUnseenPoint);
-    points.push_back(is_seen ? number(y, place_of_y) : kUnseenPoint);
+    points.push_back(is_seen ? number(x, place_of_x) : kUnseen);
+    points.push_back(is_seen ? number(y, place_of_y) : kUnseen);
   }
 
   static FaceBox box_of(const Points& points) {
@@ -241,7 +239,7 @@ class JsonReader {
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       auto row = points.row(static_cast<Eigen::Index>(f));
       if (chosen[f] < 0) {
-        row.setConstant(kUnseenPoint);
+        row.setConstant(kUnseen);
       } else {
         const Points& face = faces_[f][static_cast<std::size_t>(chosen[f])];
         row = Eigen::Map<const Eigen::RowVectorXd>(face.data(), row.size());

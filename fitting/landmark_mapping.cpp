@@ -1,15 +1,49 @@
 #include "fitting/landmark_mapping.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <optional>
+#include <string_view>
+#include <utility>
 
-#include "fitting/head_rotation.h"
-#include "fitting/landmark_formats.h"
-#include "fitting/mediapipe.h"
+#include <Eigen/Geometry>
+
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 
 namespace {
+
+/// MediaPipe's landmark for each of iBUG's 1 to 68. The jaw's are spread evenly along the face's
+/// oval from the height of the eyes to the chin; eyes, brows, nose and lips are where the two
+/// schemes name the same places.
+constexpr std::array<int, kFaceLandmarks> kMediapipeOfIbug = {
+    127, 234, 93,  132, 58,  136, 150, 176, 152, 400, 379, 365, 288, 361, 323, 454, 356,  // jaw
+    70,  63,  105, 66,  107,                                    // right brow
+    336, 296, 334, 293, 300,                                    // left brow
+    168, 197, 195, 4,                                           // bridge
+    98,  97,  2,   326, 327,                                    // nostrils
+    33,  160, 158, 133, 153, 144,                               // right eye
+    362, 385, 387, 263, 373, 380,                               // left eye
+    61,  40,  37,  0,   267, 270, 291, 321, 405, 17,  181, 91,  // outer lips
+    78,  81,  13,  311, 308, 402, 14,  178,                     // inner lips
+};
+
+constexpr const char* kMediapipePrefix = "mp";
+
+bool is_mediapipe(const LandmarkTrack& track) {
+  return !track.names.empty() && track.names.front() == "mp0";
+}
+
+/// The landmark at, or nearest to, one of iBUG's 68: "mp133" for "40". None for another name.
+std::optional<std::string> mediapipe_name(std::string_view ibug) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(ibug.data(), ibug.data() + ibug.size(), number);
+  const bool is_number = error == std::errc() && end == ibug.data() + ibug.size();
+  if (!is_number || number < 1 || number > kMediapipeOfIbug.size()) return {};
+  return kMediapipePrefix + std::to_string(kMediapipeOfIbug[number - 1]);
+}
 
 /// Numbered landmarks are those of a scheme, which has as many as its largest number.
 bool is_numbered(const LandmarkTrack& track) {
@@ -40,7 +74,41 @@ void check_scheme(const std::string& name, const LandmarkTrack& track) {
                       std::to_string(track.landmarks()) + "; is it for another set of landmarks?");
 }
 
+// iBUG's numbers, of a first one and of the one after the last.
+constexpr std::pair kRightEye{36, 42}, kLeftEye{42, 48}, kLips{48, 68};
+
+bool is_in(int number, std::pair<int, int> part) {
+  return number >= part.first && number < part.second;
+}
+
+/// \pre there is a landmark of the part
+Eigen::RowVector3d middle_of(const Positions& positions, const LandmarkVertices& landmarks,
+                             std::pair<int, int> part) {
+  Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+  int count = 0;
+  for (const auto& [number, vertex] : landmarks) {
+    if (!is_in(number, part)) continue;
+    sum += positions.row(vertex);
+    ++count;
+  }
+  return sum / count;
+}
+
 }  // namespace
+
+std::vector<std::string> numbered_names(std::size_t count) {
+  std::vector<std::string> names;
+  for (std::size_t i = 1; i <= count; ++i) names.push_back(std::to_string(i));
+  return names;
+}
+
+void name_mediapipe_landmarks(LandmarkTrack& track) {
+  if (track.landmarks() != 468 && track.landmarks() != 478) return;
+  if (!is_numbered(track)) return;
+  for (int i = 0; i < track.landmarks(); ++i) {
+    track.names[static_cast<std::size_t>(i)] = kMediapipePrefix + std::to_string(i);
+  }
+}
 
 MappedLandmarks map_landmarks(const LandmarkTrack& track, const LandmarkMapping& mapping) {
   std::vector<Eigen::Index> columns;
@@ -81,6 +149,38 @@ LandmarkVertices landmarks_beside(const std::filesystem::path& model, int vertic
     if (tell_axes(landmarks) && std::ranges::all_of(landmarks, is_on_model)) return landmarks;
   }
   return {};
+}
+
+bool tell_axes(const LandmarkVertices& landmarks) {
+  return std::ranges::all_of(std::array{kRightEye, kLeftEye, kLips}, [&](const auto& part) {
+    return std::ranges::any_of(landmarks,
+                               [&](const auto& landmark) { return is_in(landmark.first, part); });
+  });
+}
+
+Eigen::Matrix3d looking_ahead(const Positions& neutral, const LandmarkVertices& landmarks) {
+  if (!tell_axes(landmarks)) return Eigen::Matrix3d::Identity();
+  const Eigen::RowVector3d right_eye = middle_of(neutral, landmarks, kRightEye);
+  const Eigen::RowVector3d left_eye = middle_of(neutral, landmarks, kLeftEye);
+  const Eigen::RowVector3d lips = middle_of(neutral, landmarks, kLips);
+  // Rows as a viewer has them: right, which is the face's own left, up, and towards him.
+  Eigen::Matrix3d face;
+  face.row(0) = (left_eye - right_eye).normalized();
+  face.row(2) = face.row(0).cross((left_eye + right_eye) / 2 - lips).normalized();
+  face.row(1) = face.row(2).cross(face.row(0));
+  Eigen::Matrix3d best = Eigen::Matrix3d::Identity();
+  for (int x = 0; x < 3; ++x) {
+    for (const int y : {(x + 1) % 3, (x + 2) % 3}) {
+      for (const int signs : {0, 1, 2, 3}) {
+        Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
+        axes(x, 0) = signs & 1 ? -1 : 1;
+        axes(y, 1) = signs & 2 ? -1 : 1;
+        axes.col(2) = axes.col(0).cross(axes.col(1));
+        if ((axes.transpose() * face).trace() > (best.transpose() * face).trace()) best = axes;
+      }
+    }
+  }
+  return best;
 }
 
 }  // namespace mimetra

@@ -1,12 +1,20 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "toolkit/io/landmark_vertices.h"
 #include "toolkit/model/landmark_track.h"
 
 namespace mimetra {
+
+/// "1", "2", ...: iBUG counts its landmarks so.
+std::vector<std::string> numbered_names(std::size_t count);
+
+/// Gives numbered landmarks MediaPipe's names, "mp0" to "mp477", where there are 468 of them, or
+/// 478 with irises. Others keep theirs.
+void name_mediapipe_landmarks(LandmarkTrack& track);
 
 /// Landmarks of a track that a mapping knows.
 struct MappedLandmarks {
@@ -26,8 +34,16 @@ struct MappedLandmarks {
 /// landmarks are numbered and the mapping has larger numbers.
 MappedLandmarks map_landmarks(const LandmarkTrack& track, const LandmarkMapping& mapping);
 
+/// True for landmarks of both eyes and the mouth.
+bool tell_axes(const LandmarkVertices& landmarks);
+
 /// iBUG's landmarks of a model of so many vertices, where a mapping in its folder has those that
 /// tell_axes(): tracks may name others. Else none. Throws IoError where a mapping cannot be read.
 LandmarkVertices landmarks_beside(const std::filesystem::path& model, int vertices);
+
+/// What carries a model to one that looks along +z with y up, by where iBUG's landmarks (0 to 67)
+/// are on it: of the rotations that exchange axes the nearest to how its eyes and mouth lie. The
+/// identity where it has no landmark of an eye or of the mouth.
+Eigen::Matrix3d looking_ahead(const Positions& neutral, const LandmarkVertices& landmarks);
 
 }  // namespace mimetra

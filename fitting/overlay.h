@@ -1,10 +1,15 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "fitting/affine_camera.h"
 #include "fitting/image_files.h"
-#include "toolkit/model/morphable_model.h"
+#include "fitting/landmark_mapping.h"
+#include "toolkit/io/fit_file.h"
+#include "toolkit/mesh/mesh_sequence.h"
+#include "toolkit/model/blendshape_model.h"
+#include "toolkit/operations/image.h"
 
 namespace mimetra {
 
@@ -30,5 +35,34 @@ Image draw_fit(const Image& image, const Triangles& triangles, const FittedView&
 /// Throws std::invalid_argument also where none of the mesh is inside the image.
 Image draw_close_up(const Image& image, const Triangles& triangles, const FittedView& view,
                     int height);
+
+/// The images of a clip with what was fitted to them; copies share their data.
+class FitPictures {
+ public:
+  /// \pre one image and one camera for each frame of `sequence` and `mapped`
+  FitPictures(std::shared_ptr<const ImageSequence> images, MeshSequence sequence,
+              const FittedCoefficients& fit, MappedLandmarks mapped);
+
+  /// A frame's whole image. Throws as ImageSequence::image.
+  Image overlay(int frame) const;
+  /// The faces of up to five of `frames`, evenly spread, side by side. Throws as
+  /// ImageSequence::image; MismatchError for a face outside its image.
+  Image strip(const std::vector<int>& frames) const;
+
+ private:
+  struct Clip {
+    std::shared_ptr<const ImageSequence> images;
+    MeshSequence sequence;
+    std::vector<AffineCamera> cameras;
+    Eigen::Matrix<double, Eigen::Dynamic, 4> depths;
+    MappedLandmarks mapped;
+    Triangles triangles;
+  };
+
+  Image image(int frame) const;
+  FittedView view(int frame) const;
+
+  std::shared_ptr<const Clip> clip_;
+};
 
 }  // namespace mimetra

@@ -2,14 +2,14 @@
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "toolkit/mesh/context.h"
-#include "toolkit/operations/image_sequence.h"
+#include "toolkit/operations/image.h"
+#include "toolkit/operations/operation.h"
 
 namespace mimetra {
 
@@ -47,5 +47,12 @@ class VideoFile final : public ImageSequence {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// Adds .mp4, .mov and .mkv of pictures.
+void add_video_format(OperationTable& table);
+
+/// What is to be said where pictures are written to `target` without the sound of `video`; nothing
+/// where it is kept, there is none, or `target` is no video. Throws IoError.
+std::string lost_sound(const std::filesystem::path& target, const std::filesystem::path& video);
 
 }  // namespace mimetra

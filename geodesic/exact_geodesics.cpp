@@ -1,3 +1,5 @@
+#include "geodesic/exact_geodesics.h"
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -10,9 +12,8 @@
 #include <CGAL/Surface_mesh_shortest_path.h>
 #include <CGAL/boost/graph/graph_traits_TriMesh_ArrayKernelT.h>
 
-#include "geodesic/exact_geodesics.h"
-#include "geodesic/glued_surface.h"
 #include "geodesic/surface_components.h"
+#include "toolkit/mesh/surface.h"
 
 namespace mimetra::geodesic {
 namespace {
@@ -37,10 +38,8 @@ class ExactComponent {
  private:
   Eigen::VectorXd distances_within_sheets(const std::vector<VertexIndex>& sources) const;
 
+  Surface surface_;
   Mesh mesh_;
-  /// Row of each mesh vertex, and the mesh vertices of each row: several where sheets touch.
-  std::vector<VertexIndex> row_of_;
-  std::vector<std::vector<Mesh::VertexHandle>> copies_of_;
 };
 
 /// The first of each three corners. Paths gain nothing by a face that lies in the place of another,
@@ -57,12 +56,12 @@ Triangles without_doubles(const Triangles& triangles) {
 }
 
 ExactComponent::ExactComponent(const SurfaceComponent& component)
-    : copies_of_(component.positions.rows()) {
-  const GluedSurface surface =
-      glued(component.positions.rows(), without_doubles(component.triangles));
-  mesh_ = mesh_of<Mesh>(surface, component.positions);
-  row_of_ = surface.vertex;
-  for (const auto vertex : mesh_.vertices()) copies_of_[row_of_[vertex.idx()]].push_back(vertex);
+    : surface_(static_cast<int>(component.positions.rows()), without_doubles(component.triangles)) {
+  mesh_.PolyConnectivity::assign_connectivity(surface_.half_edges());
+  for (const auto vertex : mesh_.vertices()) {
+    const auto row = component.positions.row(surface_.vertex_of(vertex));
+    mesh_.set_point(vertex, {row[0], row[1], row[2]});
+  }
 }
 
 /// Dijkstra over the vertices where sheets touch: each passes on what it has to all its sheets.
@@ -70,7 +69,7 @@ Eigen::VectorXd ExactComponent::distances(const std::vector<VertexIndex>& source
   Eigen::VectorXd best = distances_within_sheets(sources);
   std::vector<VertexIndex> passages;
   for (VertexIndex row = 0; row < best.size(); ++row) {
-    if (copies_of_[row].size() > 1) passages.push_back(row);
+    if (surface_.copies_of(row).size() > 1) passages.push_back(row);
   }
   while (!passages.empty()) {
     const auto nearest =
@@ -89,13 +88,12 @@ Eigen::VectorXd ExactComponent::distances_within_sheets(
   // CGAL's object holds the query's state, so each query has its own.
   ShortestPath shortest_path(mesh_);
   for (const VertexIndex source : sources) {
-    for (const auto copy : copies_of_[source]) shortest_path.add_source_point(copy);
+    for (const auto copy : surface_.copies_of(source)) shortest_path.add_source_point(copy);
   }
-  Eigen::VectorXd result =
-      Eigen::VectorXd::Constant(static_cast<Eigen::Index>(copies_of_.size()), kUnreachable);
+  Eigen::VectorXd result = Eigen::VectorXd::Constant(surface_.vertices(), kUnreachable);
   for (const auto vertex : mesh_.vertices()) {
     const double distance = shortest_path.shortest_distance_to_source_points(vertex).first;
-    double& known = result[row_of_[vertex.idx()]];
+    double& known = result[surface_.vertex_of(vertex)];
     // CGAL says -1 where no source reaches.
     if (distance >= 0) known = std::min(known, distance);
   }
@@ -107,21 +105,16 @@ Eigen::VectorXd ExactComponent::distances_within_sheets(
 class ExactGeodesics::Implementation {
  public:
   Implementation(const Positions& positions, const Triangles& triangles)
-      : surface_(surface_components(positions, triangles, Degenerate::left_out)) {
+      : surface_(positions, triangles, Degenerate::left_out) {
     for (const SurfaceComponent& component : surface_.components) {
       components_.emplace_back(component);
     }
   }
 
   Eigen::VectorXd distances(std::span<const VertexIndex> sources) const {
-    const auto rows = sources_by_component(surface_, sources);
-    Eigen::VectorXd result = Eigen::VectorXd::Constant(
-        static_cast<Eigen::Index>(surface_.component_of.size()), kUnreachable);
-    for (std::size_t c = 0; c < rows.size(); ++c) {
-      if (rows[c].empty()) continue;
-      result(surface_.components[c].vertices) = components_[c].distances(rows[c]);
-    }
-    return result;
+    return surface_.distances(sources, [this](std::size_t c, const auto& rows) {
+      return components_[c].distances(rows);
+    });
   }
 
   const SurfaceComponents& surface() const { return surface_; }

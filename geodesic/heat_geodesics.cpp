@@ -1,3 +1,5 @@
+#include "geodesic/heat_geodesics.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -6,7 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "geodesic/heat_geodesics.h"
 #include "geodesic/heat_operators.h"
 #include "geodesic/sparse_factor.h"
 
@@ -156,9 +157,8 @@ void HeatComponent::add_divergence(const Lanes& heat, const Lane& faintest, Open
 class HeatGeodesics::Implementation {
  public:
   Implementation(const Positions& positions, const Triangles& triangles, const HeatOptions& options)
-      : surface_(surface_components(
-            positions, triangles,
-            options.skip_degenerate ? Degenerate::left_out : Degenerate::refused)) {
+      : surface_(positions, triangles,
+                 options.skip_degenerate ? Degenerate::left_out : Degenerate::refused) {
     for (SurfaceComponent& component : surface_.components) {
       try {
         methods_.push_back(
@@ -192,7 +192,7 @@ class HeatGeodesics::Implementation {
   void solve(std::span<const std::span<const VertexIndex>> lanes,
              Eigen::Ref<Eigen::MatrixXd> result) const {
     std::vector<std::vector<std::vector<VertexIndex>>> rows;  // of each lane and component
-    for (const auto& sources : lanes) rows.push_back(sources_by_component(surface_, sources));
+    for (const auto& sources : lanes) rows.push_back(surface_.rows_of(sources));
     for (std::size_t c = 0; c < methods_.size(); ++c) {
       std::vector<Eigen::Index> here;
       LaneSources sources;

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "geodesic/types.h"
+#include "toolkit/mesh/types.h"
 
 namespace mimetra::geodesic {
 

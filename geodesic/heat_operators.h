@@ -24,7 +24,7 @@ struct HeatOperators {
   std::vector<FlatTriangle> flat;
 };
 
-/// As CGAL's Heat_method_3 builds them, on its intrinsic Delaunay triangulation or on the
+/// Those of CGAL's Heat_method_3, entry by entry, on its intrinsic Delaunay triangulation or on the
 /// component's own triangles. Throws std::runtime_error.
 HeatOperators heat_operators(const SurfaceComponent& component, bool intrinsic_delaunay);
 

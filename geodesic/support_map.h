@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geodesic/types.h"
+#include "toolkit/mesh/types.h"
 
 namespace mimetra::geodesic {
 

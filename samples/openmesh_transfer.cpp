@@ -15,16 +15,7 @@ using Vertex = OpenMesh::VertexHandle;
 
 /// A mesh as an application holds it.
 Mesh textured(const TriMesh& shape) {
-  Mesh mesh;
-  for (const auto& p : shape.positions.rowwise()) mesh.add_vertex(Mesh::Point(p[0], p[1], p[2]));
-  const Polygons& polygons = shape.connectivity.polygons;
-  for (std::size_t face = 0; face + 1 < polygons.offsets.size(); ++face) {
-    std::vector<Vertex> corners;
-    for (int c = polygons.offsets[face]; c < polygons.offsets[face + 1]; ++c) {
-      corners.emplace_back(polygons.corners[static_cast<std::size_t>(c)]);
-    }
-    mesh.add_face(corners);
-  }
+  Mesh mesh = to_openmesh<Mesh>(shape);
   mesh.request_vertex_texcoords2D();
   auto stiffness = OpenMesh::getOrMakeProperty<Vertex, double>(mesh, "stiffness");
   for (const auto v : mesh.vertices()) {

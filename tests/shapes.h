@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -83,6 +85,13 @@ inline Shape both(const Shape& a, const Shape& b) {
   shape.triangles << a.triangles,
       (b.triangles.array() + static_cast<int>(a.positions.rows())).matrix();
   return shape;
+}
+
+inline Triangles triangles_of(std::initializer_list<std::array<int, 3>> list) {
+  Triangles triangles(static_cast<Eigen::Index>(list.size()), 3);
+  int t = 0;
+  for (const auto& [a, b, c] : list) triangles.row(t++) << a, b, c;
+  return triangles;
 }
 
 inline TriMesh mesh_of(const Shape& shape) {

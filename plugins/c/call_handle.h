@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "plugins/c/context_handle.h"
 #include "plugins/c/value.h"
 #include "toolkit/operations/call.h"
 

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
-#include "plugins/c/utf8.h"
-#include "plugins/c/whole_struct.h"
+#include "plugins/c/crossing.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/parameter.h"
 

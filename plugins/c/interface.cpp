@@ -5,11 +5,8 @@
 #include <memory>
 
 #include "plugins/c/call_handle.h"
-#include "plugins/c/context_handle.h"
 #include "plugins/c/job.h"
 #include "plugins/c/make_data.h"
-#include "plugins/c/stored_data.h"
-#include "plugins/c/value.h"
 #include "toolkit/operations/option_words.h"
 
 namespace mimetra {

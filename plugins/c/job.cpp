@@ -7,7 +7,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "plugins/c/utf8.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/mesh/errors.h"
 

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "plugins/c/context_handle.h"
 #include "plugins/c/value.h"
 
 /// One run of a third-party operation, from inside.

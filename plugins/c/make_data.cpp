@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plugins/c/crossing.h"
 #include "plugins/c/given_arrays.h"
-#include "plugins/c/shown_arrays.h"
-#include "plugins/c/utf8.h"
+#include "plugins/c/value.h"
 #include "toolkit/io/painting_file.h"
-#include "toolkit/io/sequence_options.h"
+#include "toolkit/io/sequence_format.h"
 #include "toolkit/io/weight_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"

@@ -1,29 +1,24 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
-#include "plugins/c/mimetra.h"
-#include "plugins/c/whole_struct.h"
-#include "toolkit/operations/parameter.h"
+#include "plugins/c/context_handle.h"
+#include "toolkit/operations/format.h"
+#include "toolkit/operations/operation.h"
 
-/// What the descriptions of plugins are made of. All throw UsageError that says what is wrong.
+/// Operations and formats of plugins, from their descriptions.
 namespace mimetra {
 
-/// Names are typed as commands and options: small letters, digits and '-'.
-std::string name_of(const char* name, const std::string& what);
+/// An operation of a plugin as one of the table, under its name. What it does wrong ends its run
+/// with an exception that names it, and changes nothing else. `toolkit` is what its runs may call.
+/// Throws UsageError that says what is wrong with the description.
+Operation plugin_operation(const mimetra_operation& described, const std::string& plugin,
+                           std::shared_ptr<const DescribedTable> toolkit);
 
-/// One line of text; empty for none.
-std::string line_of(const char* text, const std::string& what);
-
-Parameter parameter_of(const mimetra_parameter& described);
-
-/// Throws where a name is an option of every command.
-void check_not_taken(const std::string& name);
-
-/// Calls `visit` with each struct of a list that ends with NULL.
-template <typename Struct, typename Visit>
-void for_each(const Struct* const* list, Visit visit) {
-  for (; list && *list; ++list) visit(whole(**list));
-}
+/// A format of a plugin as one of the table. `toolkit` is what its functions may call. Throws
+/// UsageError that says what is wrong with the description.
+Format plugin_format(const mimetra_format& described, const std::string& plugin,
+                     const std::shared_ptr<const DescribedTable>& toolkit);
 
 }  // namespace mimetra

@@ -9,12 +9,9 @@
 #include <dlfcn.h>
 #include <sys/stat.h>
 
-#include "plugins/c/failure.h"
-#include "plugins/c/plugin_format.h"
-#include "plugins/c/plugin_operation.h"
-#include "plugins/c/utf8.h"
-#include "plugins/c/whole_struct.h"
-#include "toolkit/operations/this_binary.h"
+#include "plugins/c/crossing.h"
+#include "plugins/c/plugin_description.h"
+#include "toolkit/operations/this_process.h"
 
 namespace mimetra {
 

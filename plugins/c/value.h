@@ -1,14 +1,74 @@
 #pragma once
 
+#include <cstdint>
+#include <deque>
+#include <initializer_list>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "plugins/c/context_handle.h"
 #include "plugins/c/mimetra.h"
-#include "plugins/c/shown_arrays.h"
 #include "toolkit/operations/data.h"
 
 namespace mimetra {
+
+/// A value as named arrays, which mimetra.h lists by kind. Points into the value, which must
+/// outlive it, wherever its memory is in order; holds copies of the rest.
+class ShownArrays {
+ public:
+  explicit ShownArrays(const Data& data);
+  ShownArrays(const ShownArrays&) = delete;
+  ShownArrays& operator=(const ShownArrays&) = delete;
+
+  const std::deque<mimetra_array>& arrays() const { return arrays_; }
+  /// The same as a list that ends with NULL.
+  const mimetra_array* const* list() const { return list_.data(); }
+  /// Null where there is none of that name.
+  const mimetra_array* find(const std::string& name) const;
+
+ private:
+  using Shape = std::initializer_list<Eigen::Index>;
+
+  void show_triangles(const Triangles& triangles);
+  void show(const ModelData& data);
+  void show(const Components& components);
+  void show(const RegionData& data);
+  void show(const FieldSequence& fields);
+  void show(const Table& table);
+  void show(const LandmarkTrack& track);
+  void show(const FittedCoefficients& fit);
+  void show(const Pictures& pictures);
+  void show(const Document& document);
+  void show(const MeshSequence& sequence);
+  void show(const Connectivity& faces);
+  void show(const Field& field);
+  /// As pictures draw each region, by the field that says which is the strongest.
+  void show_colors(const Field& strongest, const Regions& regions, const Triangles& triangles);
+  void show_basis(const ShapeBasis& basis, const char* shapes, const char* names);
+
+  void add(const char* name, int type, Shape shape, const void* values,
+           int location = MIMETRA_NOWHERE);
+  void add_numbers(const char* name, Shape shape, std::vector<double> values,
+                   int location = MIMETRA_NOWHERE);
+  void add_integers(const char* name, Shape shape, std::vector<std::int32_t> values,
+                    int location = MIMETRA_NOWHERE);
+  void add_bytes(const char* name, Shape shape, std::vector<std::uint8_t> values);
+  void add_strings(const char* name, const std::vector<std::string>& texts);
+  void add_vector(const char* name, const Eigen::VectorXd& values);
+
+  std::deque<mimetra_array> arrays_;
+  std::vector<const mimetra_array*> list_;
+  std::deque<std::vector<double>> numbers_;
+  std::deque<std::vector<std::int32_t>> integers_;
+  std::deque<std::vector<std::uint8_t>> bytes_;
+  std::deque<std::vector<const char*>> strings_;
+  std::deque<std::string> names_;
+  std::deque<std::vector<std::string>> texts_;
+  std::deque<Image> images_;
+};
 
 /// A value that never changes, with its arrays and its JSON, which are made when somebody asks.
 class Value {
@@ -21,6 +81,7 @@ class Value {
   }
   /// May be called from several threads.
   const ShownArrays& arrays() const;
+  /// Regions, tables and fits as their files hold it, others by their arrays.
   const std::string& json() const;
 
  private:
@@ -30,8 +91,15 @@ class Value {
   mutable std::optional<std::string> json_;
 };
 
-/// A value as JSON: regions, tables and fits as their files hold it, others by their arrays.
-std::string json_of(const Value& value);
+/// A value of a file, with the parameters of reading that kind in `settings`: "NAME=VALUE", ended
+/// by NULL. Throws UsageError for a setting that is none, and what the readers throw.
+NamedData loaded_data(const mimetra_context& context, DataKind kind, const std::string& text,
+                      const char* const* settings);
+
+/// Writes a value, with the parameters of writing its kind, and "force=true". Throws UsageError for
+/// a setting that is none, or a path whose extension nothing writes; what the writers throw.
+void write_data(const mimetra_context& context, const Data& data, const std::string& path,
+                const char* const* settings);
 
 }  // namespace mimetra
 

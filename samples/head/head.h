@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "toolkit/io/weight_track.h"
-#include "toolkit/model/morphable_model.h"
+#include "toolkit/model/blendshape_model.h"
 
 namespace mimetra::samples {
 

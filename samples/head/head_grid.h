@@ -34,7 +34,7 @@ struct HeadVertex {
   /// Around the head: 0 at the middle of the face, 1 and -1 at the ears (1 on the head's own left),
   /// 2 at the back.
   double u = 0;
-  /// Down the head: 0 at the crown, kEyeRow, kMouthRow, kNeckRow at the neck's end.
+  /// Down the head: 0 at the crown, kEyeRow, kMouthRow, 12 at the neck's end.
   double v = 0;
   /// Above (1) or below (-1) the cut of its row, of the upper or the lower jaw; 0 for all else.
   int rim = 0;

@@ -3,10 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "samples/head/anatomy.h"
 #include "samples/head/curves.h"
-#include "samples/head/features.h"
-#include "samples/head/skull.h"
-#include "samples/head/teeth.h"
 
 namespace mimetra::samples {
 namespace {

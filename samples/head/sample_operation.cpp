@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "samples/head/head.h"
-#include "toolkit/operations/json.h"
+#include "toolkit/io/json_text.h"
 
 namespace mimetra::samples {
 

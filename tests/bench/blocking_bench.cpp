@@ -9,7 +9,7 @@
 
 #include "tests/bench/splocs_bench.h"
 #include "tests/bench/transfer_bench.h"
-#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/mesh/rounding.h"
 
 namespace mimetra::bench {
 namespace {

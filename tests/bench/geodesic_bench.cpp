@@ -4,8 +4,8 @@
 #include <span>
 #include <stdexcept>
 
+#include "geodesic/cgal_geodesics.h"
 #include "geodesic/heat_geodesics.h"
-#include "tests/bench/cgal_geodesics.h"
 #include "tests/bench/factor_size.h"
 #include "toolkit/mesh/parallel.h"
 
@@ -35,6 +35,16 @@ std::vector<Eigen::MatrixXd> own_distances(const HeatGeodesics& geodesics,
         std::span(sources).subspan(first, std::min(kGroupSize, count - first)));
   };
   parallel_for(static_cast<int>(result.size()), compute);
+  return result;
+}
+
+/// The same by CGAL's own heat method, set up here, one query after the other.
+std::vector<Eigen::VectorXd> cgal_distances(const Positions& positions, const Triangles& triangles,
+                                            const std::vector<int>& sources) {
+  const geodesic::CgalGeodesics method(positions, triangles);
+  std::vector<Eigen::VectorXd> result;
+  result.reserve(sources.size());
+  for (const int source : sources) result.push_back(method.distances(source));
   return result;
 }
 

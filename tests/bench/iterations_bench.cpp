@@ -5,8 +5,8 @@
 #include <ctime>
 
 #include "toolkit/drawing/chart.h"
-#include "toolkit/pipeline/evaluation.h"
-#include "toolkit/pipeline/region_completer.h"
+#include "toolkit/pipeline/measure.h"
+#include "toolkit/pipeline/region_choice.h"
 
 namespace mimetra::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <random>
 
-#include "toolkit/mesh/diameter.h"
+#include "toolkit/mesh/measures.h"
 #include "toolkit/pipeline/transfer.h"
 
 namespace mimetra::bench {

@@ -1,10 +1,8 @@
 #include "tests/bench/splocs_bench.h"
 
-#include "toolkit/splocs/component_update.h"
 #include "toolkit/splocs/motion.h"
 #include "toolkit/splocs/start.h"
-#include "toolkit/splocs/support_maps.h"
-#include "toolkit/splocs/weights.h"
+#include "toolkit/splocs/updates.h"
 
 namespace mimetra::bench {
 namespace {

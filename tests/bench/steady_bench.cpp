@@ -5,7 +5,8 @@
 #include <random>
 
 #include "toolkit/model/smooth_weights.h"
-#include "toolkit/pipeline/solution.h"
+#include "toolkit/model/smoothness.h"
+#include "toolkit/pipeline/solve.h"
 #include "toolkit/transfer/transfer_error.h"
 
 namespace mimetra::bench {

@@ -10,8 +10,8 @@
 #include "tests/test_folders.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/weight_file.h"
-#include "toolkit/mesh/diameter.h"
-#include "toolkit/model/regional_animation.h"
+#include "toolkit/mesh/measures.h"
+#include "toolkit/model/animation.h"
 
 namespace mimetra::bench {
 namespace {

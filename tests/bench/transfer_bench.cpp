@@ -9,7 +9,7 @@
 #include "toolkit/regions/regions.h"
 #include "toolkit/transfer/blendshape_transfer.h"
 #include "toolkit/transfer/deformation_gradients.h"
-#include "toolkit/transfer/right_hand_side.h"
+#include "toolkit/transfer/vertex_pull.h"
 #include "toolkit/transfer/vertex_transfer.h"
 
 namespace mimetra::bench {

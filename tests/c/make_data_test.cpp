@@ -9,10 +9,10 @@
 #include <gtest/gtest.h>
 
 #include "plugins/c/make_data.h"
-#include "plugins/c/shown_arrays.h"
+#include "plugins/c/value.h"
 #include "tests/shapes.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/operations/image_sequence.h"
+#include "toolkit/operations/image.h"
 #include "toolkit/operations/parameter.h"
 
 namespace mimetra {

@@ -1,5 +1,5 @@
 #include "tests/cli/bad_input.h"
-#include "toolkit/model/morphable_model.h"
+#include "toolkit/model/blendshape_model.h"
 
 /// Landmarks, mappings, and the coefficients that were fitted to them.
 namespace mimetra::test {

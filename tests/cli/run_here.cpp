@@ -14,7 +14,7 @@
 #include "samples/head/sample_operation.h"
 #include "toolkit/cli/exit_code.h"
 #include "toolkit/cli/run_command.h"
-#include "toolkit/operations/marker_operation.h"
+#include "toolkit/operations/operation.h"
 
 namespace mimetra::test {
 

@@ -1,4 +1,4 @@
-#include "toolkit/cli/terminal_text.h"
+#include "toolkit/cli/exit_code.h"
 
 #include <gtest/gtest.h>
 

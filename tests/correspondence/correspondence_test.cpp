@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/shapes.h"
-#include "toolkit/correspondence/found_correspondence.h"
 
 namespace mimetra {
 namespace {

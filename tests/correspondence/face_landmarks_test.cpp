@@ -11,7 +11,6 @@
 
 #include "tests/shapes.h"
 #include "toolkit/correspondence/automatic_markers.h"
-#include "toolkit/correspondence/face_search.h"
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {

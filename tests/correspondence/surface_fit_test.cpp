@@ -12,7 +12,6 @@
 
 #include "tests/correspondence/closest_in_triangle.h"
 #include "tests/shapes.h"
-#include "toolkit/correspondence/deformation_system.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/similarity.h"
 
@@ -322,13 +321,6 @@ TEST(SurfaceFit, StopsWhereProgressSaysSo) {
   const TriMesh mesh = test::mesh_of(test::sphere(1));
   const Context half = Context().with_progress([](double share) { return share < 0.5; });
   EXPECT_THROW(fit_to_surface(mesh, mesh, kCorners, {}, half), Cancelled);
-}
-
-TEST(DeformationSystem, KnowsNeighboursAcrossEdges) {
-  const test::Shape flat = test::grid(3, 2);
-  const auto pairs = neighbouring_triangles(flat.triangles);
-  EXPECT_THAT(pairs,
-              testing::UnorderedElementsAre(std::pair(0, 1), std::pair(0, 3), std::pair(2, 3)));
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
-#include "fitting/head_rotation.h"
-
 #include <numbers>
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "fitting/affine_camera.h"
+#include "fitting/landmark_mapping.h"
 #include "tests/shapes.h"
 
 namespace mimetra {

@@ -1,10 +1,9 @@
-#include "fitting/landmarks_of_drawings.h"
-
 #include <map>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "fitting/face_images.h"
 #include "samples/head/head.h"
 #include "tests/shapes.h"
 #include "tests/shared_data.h"

@@ -8,7 +8,6 @@
 
 #include "fitting/face_images.h"
 #include "fitting/landmark_input.h"
-#include "fitting/recording_search.h"
 #include "fitting/video_file.h"
 #include "tests/fitting/drawn_head.h"
 #include "tests/fitting/made_video.h"

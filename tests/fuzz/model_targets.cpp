@@ -9,9 +9,9 @@
 #include "tests/fuzz/values.h"
 #include "toolkit/io/bytes.h"
 #include "toolkit/io/eos.h"
+#include "toolkit/io/gltf_values.h"
 #include "toolkit/io/live_link.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/meshopt_codec.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/sequence_file.h"
 #include "toolkit/io/weight_file.h"
@@ -19,7 +19,6 @@
 
 #ifdef MIMETRA_HAS_DRACO
 #include "tests/io/draco_octahedron.h"
-#include "toolkit/io/draco_mesh.h"
 #endif
 
 namespace mimetra::fuzz {

@@ -21,10 +21,7 @@
 #include "toolkit/model/retargeting.h"
 #include "toolkit/operations/manifest.h"
 #include "toolkit/operations/operation.h"
-#include "toolkit/operations/option_file.h"
 #include "toolkit/operations/parameter_files.h"
-#include "toolkit/operations/run_file.h"
-#include "toolkit/operations/vertex_sets.h"
 
 namespace mimetra::fuzz {
 

@@ -1,4 +1,4 @@
-#include "toolkit/io/brightness.h"
+#include "toolkit/io/painting_file.h"
 
 #include <fstream>
 

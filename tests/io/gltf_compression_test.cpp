@@ -4,7 +4,7 @@
 #include <meshoptimizer.h>
 
 #include "tests/io/gltf_fixture.h"
-#include "toolkit/io/meshopt_codec.h"
+#include "toolkit/io/gltf_values.h"
 
 namespace mimetra {
 namespace {

@@ -8,7 +8,7 @@
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
 #include "toolkit/io/gltf_write.h"
-#include "toolkit/io/held_parts.h"
+#include "toolkit/io/mesh_formats.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/sequence_file.h"
 #include "toolkit/io/sequence_format.h"

@@ -12,10 +12,10 @@
 #include "toolkit/io/array_file.h"
 #include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
-#include "toolkit/mesh/choice.h"
-#include "toolkit/mesh/coordinate.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/option.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
 namespace {

@@ -8,8 +8,8 @@
 #include "tests/io/mesh_text.h"
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
+#include "toolkit/io/mesh_codecs.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/om_file.h"
 #include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
@@ -98,12 +98,6 @@ class OmFile : public testing::Test {
 
   std::string error() const {
     return test::message_of<IoError>([&] { read_mesh(path_); });
-  }
-
-  std::string refusal(int vertices, const Polygons& polygons) const {
-    const TriMesh mesh{Positions::Random(vertices, 3),
-                       Connectivity::from_polygons(vertices, polygons)};
-    return test::message_of<MismatchError>([&] { write_mesh(path_, mesh); });
   }
 
   const test::TemporaryFolder folder_;
@@ -283,18 +277,69 @@ TEST_F(OmFile, SaysWhatIsWrongWithIt) {
   EXPECT_THAT(error(), HasSubstr("face 1 is marked deleted; call garbage_collection()"));
 }
 
+TEST_F(OmFile, IsWhatOpenMeshWrites) {
+  const TriMesh mesh = from_openmesh(strip<DoubleMesh>());
+  write(to_openmesh<DoubleMesh>(mesh));
+  const std::string with_doubles = read_file(path_);
+  write_mesh(path_, mesh, {.double_precision = true});
+  EXPECT_EQ(read_file(path_), with_doubles);
+  write(to_openmesh<FloatMesh>(mesh));
+  const std::string with_floats = read_file(path_);
+  write_mesh(path_, mesh);
+  EXPECT_EQ(read_file(path_), with_floats);
+}
+
+TEST_F(OmFile, IsWrittenWithoutAWord) {
+  const TriMesh mesh = from_openmesh(strip<FloatMesh>());
+  testing::internal::CaptureStderr();
+  write_mesh(path_, mesh);
+  EXPECT_TRUE(omlog().is_enabled());
+  omlog().disable();
+  write_mesh(path_, mesh);
+  EXPECT_FALSE(omlog().is_enabled());
+  omlog().enable();
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 TEST_F(OmFile, HoldsNoSurfaceThatHalfEdgesCannot) {
+  const auto refusal = [this](int vertices, const Polygons& polygons) {
+    const TriMesh mesh{Positions::Random(vertices, 3),
+                       Connectivity::from_polygons(vertices, polygons)};
+    return test::message_of<MismatchError>([&] { write_mesh(path_, mesh); });
+  };
   EXPECT_THAT(refusal(5, {{0, 1, 2, 1, 0, 3, 0, 1, 4}, {0, 3, 6, 9}}),
-              HasSubstr("mesh.om: faces 0 and 2 both run from vertex 0 to 1, which OpenMesh's"));
-  EXPECT_THAT(refusal(4, {{0, 1, 2, 0, 1, 3}, {0, 3, 6}}), HasSubstr("faces 0 and 1 both run"));
-  EXPECT_THAT(refusal(5, {{0, 1, 2, 0, 3, 4}, {0, 3, 6}}),
-              HasSubstr("several borders meet at vertex 0"));
+              HasSubstr("mesh.om: 3 sheets of faces meet at vertex 0, which OpenMesh's"));
+  EXPECT_THAT(refusal(4, {{0, 1, 2, 0, 1, 3}, {0, 3, 6}}),
+              HasSubstr("face 1 is wound against its neighbors"));
   // Two tetrahedra that touch at a vertex.
   EXPECT_THAT(refusal(7, {{0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2, 0, 4, 5, 0, 5, 6, 0, 6, 4, 4, 6, 5},
                           {0, 3, 6, 9, 12, 15, 18, 21, 24}}),
-              HasSubstr("sheets that share no edge meet at vertex 0"));
-  EXPECT_THAT(refusal(3, {{0, 1, 1}, {0, 3}}), HasSubstr("face 0 has vertex 1 twice in a row"));
+              HasSubstr("2 sheets of faces meet at vertex 0"));
+  EXPECT_THAT(refusal(3, {{0, 1, 1}, {0, 3}}),
+              HasSubstr("face 0 has a vertex twice, which OpenMesh's halfedges cannot hold; remove "
+                        "the face, or write another format"));
   EXPECT_FALSE(std::filesystem::exists(path_));
+}
+
+TEST_F(OmFile, HoldsNoFieldThatOpenMeshDropsOrCuts) {
+  const TriMesh mesh = from_openmesh(strip<FloatMesh>());
+  const auto refusal = [&](const std::string& name, int columns) {
+    const Field field{name, Field::Location::vertices, Eigen::MatrixXd::Zero(8, columns)};
+    return test::message_of<MismatchError>([&] { write_mesh(path_, mesh, {.fields = {field}}); });
+  };
+  EXPECT_THAT(refusal("v:region", 1),
+              HasSubstr("mesh.om: OpenMesh writes no property without a name or with"));
+  EXPECT_THAT(refusal("", 1), HasSubstr("rename the field ''"));
+  EXPECT_THAT(refusal(std::string(256, 'x'), 1), HasSubstr("is longer than 255 letters"));
+  EXPECT_THAT(refusal("wide", 5), HasSubstr("the field 'wide' has 5 columns"));
+  const Field few{"few", Field::Location::triangles, Eigen::VectorXd::Zero(4)};
+  EXPECT_EQ(test::message_of<MismatchError>([&] { write_mesh(path_, mesh, {.fields = {few}}); }),
+            path_.string() + ": the field 'few' has 4 values, expected 5");
+  EXPECT_FALSE(std::filesystem::exists(path_));
+  const Field longest{std::string(255, 'x'), Field::Location::vertices, Eigen::VectorXd::Ones(8)};
+  write_mesh(path_, mesh, {.fields = {longest, {"y", longest.location, longest.values, true}}});
+  EXPECT_EQ(Read(path_).field(longest.name).values, longest.values);
+  EXPECT_EQ(Read(path_).field("y").values, longest.values);
 }
 
 TEST_F(OmFile, OfAWholeSequenceStandInAFolder) {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/shared_data.h"
-#include "toolkit/correspondence/marker_check.h"
+#include "toolkit/correspondence/markers.h"
 #include "toolkit/io/landmark_vertices.h"
 #include "toolkit/io/marker_file.h"
 #include "toolkit/io/mesh_file.h"

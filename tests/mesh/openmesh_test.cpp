@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/shapes.h"
+#include "tests/temporary_folder.h"
 #include "toolkit/mesh/openmesh.h"
 
 namespace mimetra {
@@ -51,6 +52,32 @@ TYPED_TEST(AnyOpenMesh, GivesItsPositionsAndTrianglesAndTakesPositions) {
   const Positions moved = 2 * shape.positions;
   EXPECT_EQ(from_openmesh(with_positions(given, moved)).positions, moved);
   EXPECT_EQ(from_openmesh(given).positions, shape.positions) << "the given one stays as it is";
+}
+
+TYPED_TEST(AnyOpenMesh, IsMadeOfAMeshAndGivesItBack) {
+  test::Shape shape = test::octahedron();
+  shape.positions.conservativeResize(8, 3);
+  shape.positions.bottomRows(2).setConstant(3);  // without faces
+  const TriMesh given = test::mesh_of(shape);
+  const TriMesh back = from_openmesh(to_openmesh<Mesh<TypeParam>>(given));
+  EXPECT_EQ(back.positions, given.positions);
+  EXPECT_EQ(back.connectivity.polygons, given.connectivity.polygons);
+}
+
+TEST(OpenMeshBridge, MakesAMeshAsAddFaceDoes) {
+  const test::Shape shape = test::grid(4, 3);
+  const auto expected = openmesh_of<RichTraits>(shape);
+  const auto made = to_openmesh<Mesh<RichTraits>>(test::mesh_of(shape));
+  EXPECT_EQ(made.n_edges(), expected.n_edges());
+  for (const auto vertex : made.vertices()) {
+    EXPECT_EQ(made.valence(vertex), expected.valence(vertex));
+    EXPECT_EQ(made.is_boundary(vertex), expected.is_boundary(vertex));
+    EXPECT_EQ(made.is_boundary(vertex), made.is_boundary(made.halfedge_handle(vertex)));
+  }
+  for (const auto face : made.faces()) {
+    EXPECT_EQ(face.halfedge().to().idx(), shape.triangles(face.idx(), 0));
+    EXPECT_EQ(expected.to_vertex_handle(expected.halfedge_handle(face)), face.halfedge().to());
+  }
 }
 
 TEST(OpenMeshBridge, KeepsAllProperties) {
@@ -155,6 +182,94 @@ TEST(OpenMeshBridge, TakesTextureCoordinatesOfHalfedgesFirst) {
     EXPECT_EQ(uv[1], found.polygons.corners[i]);
     EXPECT_EQ(mesh.to_vertex_handle(OpenMesh::HalfedgeHandle(int(uv[0]))).idx(), uv[1]);
   }
+}
+
+/// Texture coordinates at all corners of polygons.
+std::vector<Eigen::Vector2d> at_corners(const TextureCoordinates& texture) {
+  std::vector<Eigen::Vector2d> all;
+  for (const int corner : texture.corners) {
+    all.push_back(texture.coordinates[static_cast<std::size_t>(corner)]);
+  }
+  return all;
+}
+
+TEST(OpenMeshBridge, MakesPolygonsAndTextureCoordinatesOfVertices) {
+  const TriMesh given = from_openmesh(house());
+  const auto made = to_openmesh<OpenMesh::PolyMesh_ArrayKernelT<>>(given);
+  EXPECT_TRUE(made.has_vertex_texcoords2D());
+  EXPECT_FALSE(made.has_halfedge_texcoords2D());
+  const TriMesh back = from_openmesh(made);
+  EXPECT_EQ(back.positions, given.positions);
+  EXPECT_EQ(back.connectivity.polygons, given.connectivity.polygons);
+  EXPECT_EQ(at_corners(back.connectivity.texture), at_corners(given.connectivity.texture));
+}
+
+/// House whose corner c has the texture coordinates (c, vertex), but corner 2 none.
+TriMesh house_with_a_seam() {
+  TriMesh mesh = from_openmesh(house());
+  TextureCoordinates& texture = mesh.connectivity.texture;
+  texture = {};
+  for (const int vertex : mesh.connectivity.polygons.corners) {
+    const auto corner = static_cast<int>(texture.corners.size());
+    texture.coordinates.emplace_back(corner, vertex);
+    texture.corners.push_back(corner == 2 ? -1 : corner);
+  }
+  return mesh;
+}
+
+TEST(OpenMeshBridge, PutsTextureCoordinatesOfCornersOnHalfedges) {
+  const TriMesh given = house_with_a_seam();
+  const auto made = to_openmesh<QuadMesh>(given);
+  std::vector<Eigen::Vector2d> expected = given.connectivity.texture.coordinates;
+  expected[2] = {0, 0};
+  EXPECT_EQ(at_corners(from_openmesh(made).connectivity.texture), expected);
+  for (const auto halfedge : made.halfedges()) {
+    if (halfedge.is_boundary()) EXPECT_EQ(made.texcoord2D(halfedge), QuadMesh::TexCoord2D(0, 0));
+  }
+  // The class has places on vertices.
+  for (const auto vertex : made.vertices()) {
+    EXPECT_EQ(made.texcoord2D(vertex), QuadMesh::TexCoord2D(0, 0));
+  }
+}
+
+TEST(OpenMeshBridge, MakesTrianglesWhereTheClassHoldsNothingElse) {
+  const TriMesh given = house_with_a_seam();
+  const auto made = to_openmesh<Mesh<OpenMesh::DefaultTraits>>(given);
+  const Connectivity found = from_openmesh(made).connectivity;
+  EXPECT_EQ(found.triangles, given.connectivity.triangles);
+  EXPECT_EQ(found.polygons.size(), 5);
+  const std::vector<int> corners = {0, 1, -1, 0, -1, 3, 4, 5, 6, 4, 6, 7, 8, 9, 10};
+  const std::vector<Eigen::Vector2d> uvs = at_corners(found.texture);
+  ASSERT_EQ(uvs.size(), corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector2d expected = corners[i] < 0
+                                         ? Eigen::Vector2d(0, 0)
+                                         : Eigen::Vector2d(corners[i], found.polygons.corners[i]);
+    EXPECT_EQ(uvs[i], expected) << i;
+  }
+}
+
+TEST(OpenMeshBridge, MakesNoMeshThatHalfedgesCannotHold) {
+  const auto refusal = [](int vertices, const Polygons& polygons) {
+    const TriMesh mesh{Positions::Zero(vertices, 3),
+                       Connectivity::from_polygons(vertices, polygons)};
+    return test::message_of<MismatchError>([&] { to_openmesh<QuadMesh>(mesh); });
+  };
+  const std::string cannot = ", which OpenMesh's halfedges cannot hold; ";
+  EXPECT_EQ(refusal(3, {{0, 1, 2, 0, 1, 1}, {0, 3, 6}}),
+            "face 1 has a vertex twice" + cannot + "remove the face");
+  EXPECT_EQ(refusal(4, {{0, 1, 2, 0, 1, 3}, {0, 3, 6}}),
+            "face 1 is wound against its neighbors" + cannot + "wind all faces the same way");
+  EXPECT_EQ(refusal(5, {{0, 1, 2, 1, 0, 3, 0, 1, 4}, {0, 3, 6, 9}}),
+            "3 sheets of faces meet at vertex 0" + cannot + "give each sheet a vertex of its own");
+  EXPECT_EQ(refusal(5, {{1, 2, 0, 0, 3, 4}, {0, 3, 6}}),
+            "2 sheets of faces meet at vertex 0" + cannot + "give each sheet a vertex of its own");
+}
+
+TEST(OpenMeshBridge, MakesNoMeshOfPositionsOfAnotherVertexCount) {
+  const TriMesh mesh{Positions::Zero(5, 3), test::mesh_of(test::octahedron()).connectivity};
+  EXPECT_THAT([&] { to_openmesh<QuadMesh>(mesh); },
+              ThrowsMessage<std::invalid_argument>("5 positions for a mesh of 6 vertices"));
 }
 
 TEST(OpenMeshBridge, MakesASequenceOfMeshes) {

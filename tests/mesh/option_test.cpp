@@ -4,9 +4,12 @@
 
 #include <gmock/gmock.h>
 
+#include "toolkit/mesh/alignment.h"
+
 namespace mimetra {
 namespace {
 
+using testing::ElementsAre;
 using testing::ThrowsMessage;
 
 enum class Kind { thin, thick };
@@ -74,6 +77,27 @@ TEST(Option, OfALengthIsNotBelowZeroAndNoShareAboveOne) {
 TEST(Length, IsAShareOfTheLongestSideOrAsItIs) {
   EXPECT_EQ(Length::share(0.25).in(8), 2);
   EXPECT_EQ(Length::of(0.25).in(8), 0.25);
+}
+
+enum class Unnamed { one, two };
+
+TEST(Choice, HasItsValuesInTheOrderOfTheEnum) {
+  EXPECT_THAT(choices<AlignmentVertices>(),
+              ElementsAre(AlignmentVertices::stable, AlignmentVertices::all));
+  EXPECT_THAT(choice_names<AlignmentVertices>(), ElementsAre("stable", "all"));
+}
+
+TEST(Choice, IsFoundByItsNameOnly) {
+  EXPECT_EQ(choice_of<AlignmentVertices>("all"), AlignmentVertices::all);
+  for (const char* other : {"", "ALL", "al", "alls"}) {
+    EXPECT_FALSE(choice_of<AlignmentVertices>(other)) << other;
+  }
+}
+
+TEST(Choice, NeedsNames) {
+  EXPECT_TRUE(NamedChoice<AlignmentVertices>);
+  EXPECT_FALSE(NamedChoice<Unnamed>);
+  EXPECT_FALSE(NamedChoice<int>);
 }
 
 }  // namespace

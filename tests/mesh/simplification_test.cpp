@@ -172,6 +172,24 @@ TEST(Simplification, KeepsTextureCoordinatesWithTheirVertices) {
   }
 }
 
+TEST(Simplification, KeepsTextureCoordinatesOfFacesThatAreWoundAgainstOthers) {
+  Shape grid = test::grid(17, 17);
+  for (Eigen::Index t = 0; t < grid.triangles.rows(); t += 7) {
+    grid.triangles.row(t).reverseInPlace();
+  }
+  Connectivity mesh = Connectivity::from_triangles(289, grid.triangles);
+  for (int v = 0; v < 289; ++v) mesh.texture.coordinates.emplace_back(v % 17, v / 17);
+  mesh.texture.corners = mesh.polygons.corners;
+  const MeshSequence sheet(mesh, grid.positions.reshaped<Eigen::RowMajor>().transpose());
+  const Simplification simple = simplify(sheet, {.share = 0.5});
+  const Connectivity& left = *simple.connectivity;
+  for (std::size_t c = 0; c < left.polygons.corners.size(); ++c) {
+    const int own = simple.vertices[static_cast<std::size_t>(left.polygons.corners[c])];
+    EXPECT_EQ(left.texture.coordinates[static_cast<std::size_t>(left.texture.corners[c])],
+              Eigen::Vector2d(own % 17, own / 17));
+  }
+}
+
 /// Two charts that lie on each other in texture space, with a seam at x = 8.
 TEST(Simplification, KeepsChartsThatOverlapApart) {
   const Shape grid = test::grid(17, 17);

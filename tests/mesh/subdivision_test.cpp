@@ -114,6 +114,28 @@ TEST(Subdivision, DoesNotOpenSeams) {
   }
 }
 
+TEST(Subdivision, PassesOverFacesThatCollapseIntoAnEdge) {
+  // The upper row of a sheet has vertices of its own at the edge from 5 to 6. Two faces without
+  // area lie between both sides.
+  const Shape sheet = test::grid(4, 3);
+  Shape apart = sheet;
+  apart.positions.conservativeResize(14, 3);
+  apart.positions.bottomRows(2) = sheet.positions.middleRows(5, 2);
+  for (Eigen::Index t = 0; t < apart.triangles.rows(); ++t) {
+    if (apart.triangles.row(t).maxCoeff() < 8) continue;
+    for (int c = 0; c < 3; ++c) {
+      int& corner = apart.triangles(t, c);
+      if (corner == 5 || corner == 6) corner += 7;
+    }
+  }
+  apart.triangles.conservativeResize(apart.triangles.rows() + 2, 3);
+  apart.triangles.bottomRows(2) << 12, 13, 6, 12, 6, 5;
+  const Positions fine = finer(apart), expected = finer(sheet);
+  for (Eigen::Index v = 0; v < expected.rows(); ++v) {
+    EXPECT_LT((fine.rowwise() - expected.row(v)).rowwise().norm().minCoeff(), 1e-15);
+  }
+}
+
 TEST(Subdivision, TakesEdgesOfThreeTriangles) {
   Shape shape{Positions(5, 3), Triangles(3, 3)};
   shape.positions << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1;

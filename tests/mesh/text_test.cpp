@@ -56,5 +56,23 @@ TEST(Text, LowersTheLettersOfAnExtensionAndNothingElse) {
   EXPECT_EQ(lower_case("\xC3\x84Z_9"), "\xC3\x84z_9");
 }
 
+TEST(NearestWord, IsTheOneWithTheFewestEdits) {
+  EXPECT_EQ(nearest_word("decompse", {"align", "decompose", "info"}), "decompose");
+  EXPECT_EQ(nearest_word("--radios", {"--ratio", "--radius"}), "--radius");
+}
+
+TEST(NearestWord, MayBeInOtherLetters) {
+  EXPECT_EQ(nearest_word("JAWOPEN", {"jawLeft", "jawOpen"}), "jawOpen");
+  EXPECT_EQ(nearest_word("--K", {"-o", "-k"}), "-k");
+}
+
+TEST(NearestWord, IsEmptyWhereNothingIsNear) {
+  EXPECT_EQ(nearest_word("banana", {"align", "decompose", "info"}), "");
+}
+
+TEST(NearestWord, IsTheEarlierOneOfTwoEquallyNear) {
+  EXPECT_EQ(nearest_word("cat", {"bat", "hat"}), "bat");
+}
+
 }  // namespace
 }  // namespace mimetra

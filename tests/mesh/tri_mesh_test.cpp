@@ -9,6 +9,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::ThrowsMessage;
 
 Connectivity quad_and_triangle() {
@@ -93,20 +94,44 @@ TEST(FirstDifferentFace, IsTheFirstOneThatOnlyOneMeshHas) {
   EXPECT_EQ(first_different_face(quad_and_triangle(), quad_and_triangle()), -1);
 }
 
-TEST(Extent, IsTheLongestSideOfTheBoxAndZeroOfNothing) {
-  Positions positions(2, 3);
-  positions << 1, 1, 1, 3, 4, 7;
-  EXPECT_EQ(extent(positions), 6);
-  EXPECT_EQ(box_diagonal(positions), 7);
-  EXPECT_EQ(extent(Positions(0, 3)), 0);
-  EXPECT_EQ(box_diagonal(Positions(0, 3)), 0);
-}
-
 TEST(Connectivity, KnowsTheVerticesThatTrianglesUse) {
   Triangles triangles(1, 3);
   triangles << 4, 1, 2;
   EXPECT_THAT(used_vertices(triangles, 6), ElementsAre(1, 2, 4));
   EXPECT_THAT(used_vertices(Triangles(0, 3), 3), ElementsAre(0, 1, 2));
+}
+
+/// Four triangles with the statements of an OBJ file.
+Connectivity grouped() {
+  const test::Shape shape = test::grid(3, 2);
+  Connectivity connectivity = Connectivity::from_triangles(6, shape.triangles);
+  connectivity.groups = {{0, "g skin lips"}, {0, "usemtl wet skin"}, {1, "s 1"}, {2, "o teeth"},
+                         {3, "g"},           {4, "g nothing"}};
+  return connectivity;
+}
+
+TEST(NamedFaces, AreInEachGroupThatStatementsName) {
+  const std::vector<NamedFaces> groups = named_faces(grouped(), FaceGroupKind::group);
+  ASSERT_EQ(groups.size(), 3U);
+  EXPECT_EQ(groups[0].name, "skin");
+  EXPECT_THAT(groups[0].faces, ElementsAre(0, 1, 2));
+  EXPECT_EQ(groups[1].name, "lips");
+  EXPECT_THAT(groups[1].faces, ElementsAre(0, 1, 2));
+  EXPECT_EQ(groups[2].name, "teeth");
+  EXPECT_THAT(groups[2].faces, ElementsAre(2, 3));
+}
+
+TEST(NamedFaces, KeepTheSpacesOfAMaterial) {
+  const std::vector<NamedFaces> materials = named_faces(grouped(), FaceGroupKind::material);
+  ASSERT_EQ(materials.size(), 1U);
+  EXPECT_EQ(materials[0].name, "wet skin");
+  EXPECT_THAT(materials[0].faces, ElementsAre(0, 1, 2, 3));
+}
+
+TEST(NamedFaces, AreNoneWithoutStatements) {
+  const test::Shape shape = test::grid(3, 2);
+  const Connectivity bare = Connectivity::from_triangles(6, shape.triangles);
+  EXPECT_THAT(named_faces(bare, FaceGroupKind::group), IsEmpty());
 }
 
 }  // namespace

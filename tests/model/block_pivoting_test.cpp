@@ -1,11 +1,10 @@
-#include "toolkit/model/block_pivoting.h"
+#include "toolkit/model/box_least_squares.h"
 
 #include <random>
 
 #include <gmock/gmock.h>
 
 #include "tests/cache_sizes.h"
-#include "toolkit/model/box_least_squares.h"
 
 namespace mimetra {
 namespace {

@@ -6,9 +6,6 @@
 #include <Eigen/Geometry>
 
 #include "tests/shapes.h"
-#include "toolkit/model/displaced_expressions.h"
-#include "toolkit/model/exchanged_sides.h"
-#include "toolkit/model/torn_expressions.h"
 
 namespace mimetra {
 namespace {

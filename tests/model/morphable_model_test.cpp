@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/model/octahedron.h"
-#include "toolkit/model/morphable_model.h"
+#include "toolkit/model/blendshape_model.h"
 
 namespace mimetra {
 namespace {

@@ -1,4 +1,4 @@
-#include "toolkit/model/motion_filter.h"
+#include "toolkit/model/smoothness.h"
 
 #include <random>
 

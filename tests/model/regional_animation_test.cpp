@@ -1,11 +1,10 @@
-#include "toolkit/model/regional_animation.h"
+#include "toolkit/model/animation.h"
 
 #include <random>
 
 #include <gmock/gmock.h>
 
 #include "tests/model/octahedron.h"
-#include "toolkit/model/animation.h"
 
 namespace mimetra {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "toolkit/model/box_least_squares.h"
 #include "toolkit/model/smooth_weights.h"
+#include "toolkit/model/smoothness.h"
 
 namespace mimetra {
 namespace {

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/temporary_folder.h"
-#include "toolkit/operations/command_terms.h"
+#include "toolkit/operations/option_words.h"
 #include "toolkit/operations/pipeline_parameters.h"
 
 namespace mimetra {

@@ -1,4 +1,4 @@
-#include "toolkit/operations/exclusion.h"
+#include "toolkit/operations/parameter.h"
 
 #include <set>
 #include <sstream>
@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "toolkit/operations/call.h"
-#include "toolkit/operations/marker_operation.h"
+#include "toolkit/operations/operation.h"
 
 namespace mimetra {
 namespace {

@@ -1,4 +1,4 @@
-#include "toolkit/operations/input_files.h"
+#include "toolkit/operations/call.h"
 
 #include <fstream>
 #include <string>

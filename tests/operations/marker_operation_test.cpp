@@ -11,8 +11,8 @@
 #include "toolkit/io/marker_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/operations/call.h"
-#include "toolkit/operations/heads.h"
-#include "toolkit/operations/marker_operation.h"
+#include "toolkit/operations/match_parameters.h"
+#include "toolkit/operations/operation.h"
 
 namespace mimetra {
 namespace {

@@ -8,8 +8,7 @@
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/operations/listing.h"
-#include "toolkit/operations/loading.h"
+#include "toolkit/operations/call.h"
 #include "toolkit/operations/operation.h"
 
 namespace mimetra {

@@ -1,4 +1,4 @@
-#include "toolkit/operations/region_report.h"
+#include "toolkit/operations/reports.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>

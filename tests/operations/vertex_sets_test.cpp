@@ -1,4 +1,4 @@
-#include "toolkit/operations/vertex_sets.h"
+#include "toolkit/operations/parameter_files.h"
 
 #include <fstream>
 

@@ -4,7 +4,7 @@
 
 #include "tests/pipeline/takes.h"
 #include "tests/shapes.h"
-#include "toolkit/pipeline/moving_parts.h"
+#include "toolkit/pipeline/source.h"
 
 namespace mimetra {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "tests/option_ranges.h"
 #include "toolkit/mesh/alignment.h"
-#include "toolkit/pipeline/evaluation.h"
+#include "toolkit/pipeline/measure.h"
 #include "toolkit/pipeline/transfer.h"
 
 namespace mimetra {

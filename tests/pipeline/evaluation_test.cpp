@@ -1,4 +1,4 @@
-#include "toolkit/pipeline/evaluation.h"
+#include "toolkit/pipeline/measure.h"
 
 #include <gmock/gmock.h>
 

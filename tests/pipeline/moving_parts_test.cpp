@@ -1,4 +1,4 @@
-#include "toolkit/pipeline/moving_parts.h"
+#include "toolkit/pipeline/source.h"
 
 #include <gmock/gmock.h>
 

@@ -2,7 +2,7 @@
 
 #include "tests/correspondence/cut_sheet.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/pipeline/opening_comparison.h"
+#include "toolkit/pipeline/target.h"
 
 namespace mimetra {
 namespace {

@@ -8,10 +8,10 @@
 #include "toolkit/mesh/simplification.h"
 #include "toolkit/mesh/subdivision.h"
 #include "toolkit/mesh/unit_change.h"
-#include "toolkit/pipeline/evaluation.h"
+#include "toolkit/pipeline/measure.h"
+#include "toolkit/pipeline/region_choice.h"
 #include "toolkit/pipeline/retarget.h"
 #include "toolkit/pipeline/rig.h"
-#include "toolkit/pipeline/simplified_regions.h"
 #include "toolkit/transfer/joint_fit.h"
 #include "toolkit/transfer/region_selection.h"
 

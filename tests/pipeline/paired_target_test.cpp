@@ -1,11 +1,11 @@
-#include "toolkit/pipeline/matched_target.h"
+#include "toolkit/pipeline/target.h"
 
 #include <algorithm>
 
 #include <gmock/gmock.h>
 
 #include "tests/pipeline/takes.h"
-#include "toolkit/pipeline/evaluation.h"
+#include "toolkit/pipeline/measure.h"
 
 namespace mimetra {
 namespace {

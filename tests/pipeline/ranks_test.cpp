@@ -2,7 +2,7 @@
 
 #include "tests/pipeline/takes.h"
 #include "tests/thread_ranks.h"
-#include "toolkit/pipeline/evaluation.h"
+#include "toolkit/pipeline/measure.h"
 
 /// Transfers and evaluations on several ranks, to which frames are dealt out, against those of one:
 /// the same bytes on all.

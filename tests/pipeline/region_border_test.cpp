@@ -1,4 +1,4 @@
-#include "toolkit/pipeline/region_border.h"
+#include "toolkit/pipeline/region_choice.h"
 
 #include <algorithm>
 #include <functional>
@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/pipeline/takes.h"
-#include "toolkit/pipeline/evaluation.h"
+#include "toolkit/pipeline/measure.h"
 #include "toolkit/regions/falloff.h"
 
 namespace mimetra {

@@ -4,8 +4,8 @@
 
 #include "tests/pipeline/takes.h"
 #include "tests/shapes.h"
-#include "toolkit/pipeline/moving_parts.h"
 #include "toolkit/pipeline/region_choice.h"
+#include "toolkit/pipeline/source.h"
 
 namespace mimetra {
 namespace {

@@ -1,9 +1,9 @@
-#include "toolkit/pipeline/region_selector.h"
+#include "toolkit/pipeline/region_choice.h"
 
 #include <gmock/gmock.h>
 
 #include "tests/pipeline/takes.h"
-#include "toolkit/pipeline/evaluation.h"
+#include "toolkit/pipeline/measure.h"
 
 namespace mimetra {
 namespace {

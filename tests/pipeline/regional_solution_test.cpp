@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/pipeline/takes.h"
-#include "toolkit/regions/partition.h"
+#include "toolkit/regions/falloff.h"
 
 namespace mimetra {
 namespace {

@@ -9,7 +9,6 @@ namespace {
 
 using test::Noted;
 using testing::Contains;
-using testing::Field;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
@@ -101,7 +100,8 @@ TEST_F(RigTest, KnowsWhatTheTargetHasByANameThatIsWrittenOtherwise) {
   EXPECT_THAT(made.model.expressions().names,
               testing::ElementsAre("shape0", "shape1", "shape2", "shape3"));
   EXPECT_EQ(named(made, "shape2").origin, RigOrigin::example);
-  EXPECT_THAT(noted.notes, Contains(Field(&Note::text, HasSubstr("'Shape_2' is 'shape2'"))));
+  EXPECT_THAT(noted.notes,
+              Contains(testing::Field(&Note::text, HasSubstr("'Shape_2' is 'shape2'"))));
 }
 
 TEST_F(RigTest, GivesEqualBytesForAnyNumberOfThreadsAndByAnIdentityOfPairs) {
@@ -121,7 +121,8 @@ TEST_F(RigTest, NotesAnExampleThatIsTheNeutral) {
   const Rig made =
       rig(source_, {"double", bare_}, {{"shape3", bare_.neutral(), 3}}, {}, noted.context());
   EXPECT_EQ(named(made, "shape3").largest, 0);
-  EXPECT_THAT(noted.notes, Contains(Field(&Note::text, HasSubstr("target's neutral: shape3"))));
+  EXPECT_THAT(noted.notes,
+              Contains(testing::Field(&Note::text, HasSubstr("target's neutral: shape3"))));
 }
 
 TEST_F(RigTest, NotesFlippedTriangles) {
@@ -130,9 +131,9 @@ TEST_F(RigTest, NotesFlippedTriangles) {
   folded.col(0) *= -1;
   const Rig made = rig(source_, {"double", bare_}, {{"shape3", folded, 3}}, {}, noted.context());
   EXPECT_GT(named(made, "shape3").flipped, 0);
-  EXPECT_THAT(noted.notes,
-              Contains(Field(&Note::text, HasSubstr("may not be usable: flipped triangles in "
-                                                    "shape3"))));
+  EXPECT_THAT(noted.notes, Contains(testing::Field(
+                               &Note::text, HasSubstr("may not be usable: flipped triangles in "
+                                                      "shape3"))));
 }
 
 TEST_F(RigTest, NeedsExpressionsOfTheSource) {

@@ -4,9 +4,8 @@
 #include "tests/streams.h"
 #include "tests/transfer/seamed_face.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/model/motion_filter.h"
-#include "toolkit/pipeline/evaluation.h"
-#include "toolkit/pipeline/memory.h"
+#include "toolkit/model/smoothness.h"
+#include "toolkit/pipeline/measure.h"
 
 namespace mimetra {
 namespace {

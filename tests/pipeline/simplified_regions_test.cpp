@@ -1,4 +1,4 @@
-#include "toolkit/pipeline/simplified_regions.h"
+#include "toolkit/pipeline/region_choice.h"
 
 #include <gmock/gmock.h>
 

@@ -1,8 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/pipeline/takes.h"
-#include "toolkit/pipeline/evaluation.h"
-#include "toolkit/pipeline/solution_error.h"
+#include "toolkit/pipeline/measure.h"
 #include "toolkit/transfer/soft_border.h"
 
 namespace mimetra {

@@ -1,4 +1,4 @@
-#include "toolkit/pipeline/solution.h"
+#include "toolkit/pipeline/solve.h"
 
 #include <gmock/gmock.h>
 

@@ -1,10 +1,11 @@
-#include "toolkit/regions/carried_regions.h"
+#include "toolkit/regions/regions.h"
 
 #include <gmock/gmock.h>
 
 #include "tests/regions/moving_grid.h"
 #include "tests/shapes.h"
 #include "toolkit/mesh/mesh_sequence.h"
+#include "toolkit/mesh/simplification.h"
 
 namespace mimetra::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "toolkit/regions/disc_search.h"
+#include "toolkit/regions/discs.h"
 
 #include <random>
 

@@ -6,7 +6,7 @@
 #include "tests/mesh/captured_performance.h"
 #include "tests/shapes.h"
 #include "tests/shared_data.h"
-#include "toolkit/mesh/inspection.h"
+#include "toolkit/mesh/surface.h"
 #include "toolkit/regions/regions.h"
 
 /// Regions with distances along the surface, from decomposition to the triangles.

@@ -1,4 +1,4 @@
-#include "toolkit/regions/farthest_discs.h"
+#include "toolkit/regions/discs.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "toolkit/regions/partition.h"
+#include "toolkit/regions/falloff.h"
 
 #include <limits>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "toolkit/report/coded_poses.h"
+#include "toolkit/report/viewer_data.h"
 
 #include <algorithm>
 #include <cmath>

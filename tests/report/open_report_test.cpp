@@ -9,7 +9,7 @@
 
 #include "tests/report/browser.h"
 #include "tests/report/report_fixture.h"
-#include "toolkit/report/viewer_script.h"
+#include "toolkit/report/viewer_data.h"
 
 namespace mimetra {
 namespace {

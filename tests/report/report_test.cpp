@@ -11,10 +11,10 @@
 #include "toolkit/correspondence/correspondence.h"
 #include "toolkit/io/correspondence_file.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/operations/evaluation_table.h"
+#include "toolkit/operations/reports.h"
 #include "toolkit/operations/xml_text.h"
 #include "toolkit/report/report_page.h"
-#include "toolkit/report/viewer_script.h"
+#include "toolkit/report/viewer_data.h"
 
 namespace mimetra {
 namespace {

@@ -11,7 +11,6 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/shapes.h"
-#include "toolkit/report/coded_poses.h"
 
 namespace mimetra {
 namespace {

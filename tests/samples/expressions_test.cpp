@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "samples/head/features.h"
+#include "samples/head/anatomy.h"
 #include "tests/samples/head_fixture.h"
 #include "toolkit/mesh/alignment.h"
 

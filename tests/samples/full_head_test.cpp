@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "samples/head/features.h"
+#include "samples/head/anatomy.h"
 #include "tests/samples/full_head.h"
 #include "tests/samples/head_fixture.h"
 #include "toolkit/pipeline/region_choice.h"

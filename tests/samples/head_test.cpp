@@ -5,8 +5,9 @@
 
 #include <gmock/gmock.h>
 
-#include "samples/head/features.h"
+#include "samples/head/anatomy.h"
 #include "tests/samples/head_fixture.h"
+#include "toolkit/mesh/surface.h"
 
 namespace mimetra::test {
 namespace {

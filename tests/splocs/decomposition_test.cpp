@@ -10,8 +10,8 @@
 #include "tests/splocs/literal_splocs.h"
 #include "tests/splocs/synthetic.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/splocs/reduction.h"
 #include "toolkit/splocs/start.h"
-#include "toolkit/splocs/vertex_energies.h"
 
 namespace mimetra::test {
 namespace {

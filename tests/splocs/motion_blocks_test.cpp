@@ -1,4 +1,4 @@
-#include "toolkit/splocs/motion_blocks.h"
+#include "toolkit/splocs/motion.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@ namespace {
 /// Two whole blocks and a rest, of 3 rows, each with its number in all places.
 class ScratchTest : public testing::Test {
  protected:
-  using Block = ScratchBlocks<double>::Block;
+  using Block = KeptBlocks<double>::Block;
 
   ScratchTest() {
     for (int b = 0; b < blocks_->count(); ++b) blocks_->put(b, numbered(b));
@@ -16,8 +16,8 @@ class ScratchTest : public testing::Test {
 
   Block numbered(int b) const { return Block::Constant(3, 3 * blocks_->size(b), b); }
 
-  std::unique_ptr<ScratchBlocks<double>> blocks_ =
-      std::make_unique<ScratchBlocks<double>>(3, VertexPart(2 * VertexPart::kBlock + 5));
+  std::unique_ptr<KeptBlocks<double>> blocks_ =
+      kept_blocks<double>(MotionPlace::scratch, 3, VertexPart(2 * VertexPart::kBlock + 5));
 };
 
 TEST_F(ScratchTest, BlocksThatAreHeldKeepTheirNumbers) {

@@ -9,8 +9,7 @@
 
 #include "tests/cache_sizes.h"
 #include "tests/thread_ranks.h"
-#include "toolkit/mesh/near_tie.h"
-#include "toolkit/splocs/vertex_energies.h"
+#include "toolkit/mesh/rounding.h"
 
 namespace mimetra::test {
 namespace {

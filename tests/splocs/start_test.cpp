@@ -1,5 +1,5 @@
 #include "toolkit/splocs/start.h"
-#include "toolkit/splocs/vertex_energies.h"
+#include "toolkit/splocs/reduction.h"
 
 #include <gmock/gmock.h>
 

@@ -48,8 +48,8 @@ SurfaceDistances welded_distances(const Shape& shape,
 TEST(SurfaceDistances, PassAcrossASeamThatIsWelded) {
   const CutGrid cut = cut_grid(9, 5, 4);
   const Shape whole = test::grid(9, 5);
-  for (const auto method :
-       {GeodesicMethod::heat, GeodesicMethod::heat_direct, GeodesicMethod::exact}) {
+  for (const auto method : {GeodesicMethod::heat, GeodesicMethod::heat_direct,
+                            GeodesicMethod::exact, GeodesicMethod::cgal}) {
     const SurfaceDistances distances = welded_distances(cut.shape, method);
     const SurfaceDistances expected(whole.positions, whole.triangles, Weld::none(45), method);
     EXPECT_EQ(distances(2).head(45), expected(2));

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "plugins/c/interface.h"
-#include "plugins/c/plugin_operation.h"
+#include "plugins/c/plugin_description.h"
 #include "plugins/c/value.h"
 #include "tests/threads/together.h"
 

@@ -7,7 +7,6 @@
 #include <Eigen/LU>
 
 #include "tests/transfer/faces.h"
-#include "toolkit/transfer/border_crease.h"
 #include "toolkit/transfer/deformation_gradients.h"
 #include "toolkit/transfer/transfer_error.h"
 

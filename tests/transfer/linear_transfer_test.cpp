@@ -7,6 +7,7 @@
 #include "toolkit/model/animation.h"
 #include "toolkit/model/box_least_squares.h"
 #include "toolkit/model/smooth_weights.h"
+#include "toolkit/model/smoothness.h"
 #include "toolkit/transfer/deformation_gradients.h"
 #include "toolkit/transfer/linear_transfer.h"
 

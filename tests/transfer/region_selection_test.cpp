@@ -8,7 +8,7 @@
 #include <Eigen/LU>
 
 #include "tests/transfer/faces.h"
-#include "toolkit/regions/farthest_discs.h"
+#include "toolkit/regions/discs.h"
 #include "toolkit/transfer/blendshape_transfer.h"
 #include "toolkit/transfer/deformation_gradients.h"
 

@@ -7,8 +7,8 @@
 
 #include "tests/streams.h"
 #include "tests/transfer/seamed_face.h"
+#include "toolkit/transfer/gradient_system.h"
 #include "toolkit/transfer/vertex_transfer.h"
-#include "toolkit/transfer/vertex_unknowns.h"
 
 /// Vertices that are one point of the surface.
 namespace mimetra {

@@ -8,8 +8,8 @@
 #include <Eigen/QR>
 
 #include "tests/transfer/faces.h"
-#include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/inspection.h"
+#include "toolkit/mesh/measures.h"
 #include "toolkit/transfer/blendshape_transfer.h"
 #include "toolkit/transfer/deformation_gradients.h"
 #include "toolkit/transfer/edges.h"

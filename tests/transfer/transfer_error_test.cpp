@@ -5,7 +5,7 @@
 
 #include "tests/transfer/faces.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/triangle_quality.h"
+#include "toolkit/mesh/measures.h"
 #include "toolkit/transfer/blendshape_transfer.h"
 #include "toolkit/transfer/deformation_gradients.h"
 #include "toolkit/transfer/edges.h"

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/transfer/faces.h"
+#include "toolkit/transfer/gradient_system.h"
 #include "toolkit/transfer/vertex_transfer.h"
-#include "toolkit/transfer/vertex_unknowns.h"
 
 /// What holds the pieces of a mesh in place.
 namespace mimetra {

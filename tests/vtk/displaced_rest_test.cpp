@@ -1,4 +1,4 @@
-#include "toolkit/vtk/displaced_rest.h"
+#include "toolkit/vtk/poly_data.h"
 
 #include <limits>
 #include <string>
@@ -15,7 +15,6 @@
 #include "tests/temporary_folder.h"
 #include "tests/vtk/vtp_fixture.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/vtk/poly_data.h"
 
 namespace mimetra::test {
 namespace {

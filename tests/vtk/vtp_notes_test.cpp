@@ -10,7 +10,7 @@
 #include "tests/vtk/vtp_fixture.h"
 #include "toolkit/operations/operation.h"
 #include "toolkit/vtk/poly_data.h"
-#include "toolkit/vtk/vtp_formats.h"
+#include "toolkit/vtk/vtk_formats.h"
 
 namespace mimetra::test {
 namespace {

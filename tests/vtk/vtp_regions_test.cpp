@@ -5,7 +5,7 @@
 #include "tests/vtk/vtp_fixture.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/operation.h"
-#include "toolkit/vtk/vtp_formats.h"
+#include "toolkit/vtk/vtk_formats.h"
 
 namespace mimetra::test {
 namespace {

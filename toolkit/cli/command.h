@@ -41,8 +41,6 @@ struct Command {
 
 /// Headings of its options in their order, "" for what the command is about at first.
 std::vector<std::string> headings_of(const Command& command);
-/// What stands for a value in help texts: the name in capitals.
-std::string upper(std::string text);
 /// An option as it is typed: "-o, --out OUT".
 std::string forms_of(const CommandOption& option);
 /// "mimetra transfer [OPTIONS] -o OUT SOURCE TARGET..."
@@ -52,5 +50,13 @@ std::string synopsis(const Command& command);
 std::vector<Command> commands_of(const OperationTable& table);
 /// The one of a name; null where there is none.
 const Command* find_command(const std::vector<Command>& commands, const std::string& name);
+
+enum class HelpLength {
+  brief,  ///< one screen: options under headings by name, but for the usual ones
+  all     ///< every option explained
+};
+
+/// What --help says of a command, in lines of 80 characters but for its examples.
+std::string help_page(const Command& command, HelpLength length);
 
 }  // namespace mimetra::cli

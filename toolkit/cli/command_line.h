@@ -53,4 +53,8 @@ struct ParsedLine {
 ParsedLine parse_command_line(const OperationTable& table,
                               const std::vector<std::string>& arguments);
 
+/// What `--version` says after the version: the licence, the instructions this was built for, and
+/// the libraries it is made with.
+std::string_view libraries();
+
 }  // namespace mimetra::cli

@@ -1,9 +1,10 @@
-#include "toolkit/cli/completion.h"
+#include "toolkit/cli/manual.h"
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/cli/command.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/json.h"
 
 namespace mimetra::cli {
 
@@ -64,58 +65,11 @@ std::string zsh_argument(const CommandOption& option) {
   return line + in_quotes(rest);
 }
 
-enum class Shell { bash, zsh, fish };
-
-constexpr std::string_view choice_name(Shell value) {
-  switch (value) {
-    case Shell::bash:
-      return "bash";
-    case Shell::zsh:
-      return "zsh";
-    case Shell::fish:
-      return "fish";
-  }
-  return {};
-}
-
-std::string script_for(Shell shell, const std::vector<Command>& commands) {
-  switch (shell) {
-    case Shell::bash:
-      return bash_completion(commands);
-    case Shell::zsh:
-      return zsh_completion(commands);
-    case Shell::fish:
-      return fish_completion(commands);
-  }
-  return {};
-}
-
-Operation completion_operation(const OperationTable& table) {
-  Operation operation;
-  operation.name = "completion";
-  operation.summary = "Print a script that completes this command in a shell";
-  operation.parameters = {choice_parameter("shell", Shell::bash, "shell")};
-  operation.examples = {"completion --shell bash > /etc/bash_completion.d/mimetra",
-                        "completion --shell fish > ~/.config/fish/completions/mimetra.fish"};
-  operation.run = [&table](const Invocation& invocation) {
-    const std::vector<Command> commands = commands_of(table);
-    const std::string script = script_for(invocation.parameters.choice<Shell>("shell"), commands);
-    return Outcome{{}, json_text(Json{{"script", script}}), script};
-  };
-  return operation;
-}
-
-}  // namespace
-
-namespace {
-
 /// What files a value may be: "no", "yes", or what their names end in.
 std::string bash_files(const CommandOption& option) {
   if (!option.takes_file) return "no";
   return option.endings.empty() ? "yes" : joined(option.endings, " ");
 }
-
-}  // namespace
 
 std::string bash_completion(const std::vector<Command>& commands) {
   std::vector<std::string> names;
@@ -205,8 +159,6 @@ std::string zsh_completion(const std::vector<Command>& commands) {
          "_mimetra \"$@\"\n";
 }
 
-namespace {
-
 std::string fish_files(const CommandOption& option) {
   if (!option.takes_file) return " -x";
   if (option.endings.empty()) return " -r -F";
@@ -214,8 +166,6 @@ std::string fish_files(const CommandOption& option) {
   return " -x -a '(__fish_complete_suffix " + joined(option.endings, "; __fish_complete_suffix ") +
          ")'";
 }
-
-}  // namespace
 
 std::string fish_completion(const std::vector<Command>& commands) {
   std::string text = "# Completion of mimetra for fish.\n";
@@ -238,6 +188,49 @@ std::string fish_completion(const std::vector<Command>& commands) {
   }
   return text;
 }
+
+enum class Shell { bash, zsh, fish };
+
+constexpr std::string_view choice_name(Shell value) {
+  switch (value) {
+    case Shell::bash:
+      return "bash";
+    case Shell::zsh:
+      return "zsh";
+    case Shell::fish:
+      return "fish";
+  }
+  return {};
+}
+
+std::string script_for(Shell shell, const std::vector<Command>& commands) {
+  switch (shell) {
+    case Shell::bash:
+      return bash_completion(commands);
+    case Shell::zsh:
+      return zsh_completion(commands);
+    case Shell::fish:
+      return fish_completion(commands);
+  }
+  return {};
+}
+
+Operation completion_operation(const OperationTable& table) {
+  Operation operation;
+  operation.name = "completion";
+  operation.summary = "Print a script that completes this command in a shell";
+  operation.parameters = {choice_parameter("shell", Shell::bash, "shell")};
+  operation.examples = {"completion --shell bash > /etc/bash_completion.d/mimetra",
+                        "completion --shell fish > ~/.config/fish/completions/mimetra.fish"};
+  operation.run = [&table](const Invocation& invocation) {
+    const std::vector<Command> commands = commands_of(table);
+    const std::string script = script_for(invocation.parameters.choice<Shell>("shell"), commands);
+    return Outcome{{}, json_text(Json{{"script", script}}), script};
+  };
+  return operation;
+}
+
+}  // namespace
 
 void add_completion(OperationTable& table) {
   table.add(completion_operation(table));

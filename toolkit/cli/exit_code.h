@@ -2,8 +2,14 @@
 
 #include <functional>
 #include <iosfwd>
+#include <string>
+#include <string_view>
 
 namespace mimetra::cli {
+
+/// `text` as a terminal may be given it: names of files and of what files hold can be anything. All
+/// but lines, tabs and printable UTF-8 is written as \xHH, so that nothing acts on the terminal.
+std::string terminal_text(std::string_view text);
 
 /// Exit codes of the command (docs/errors.md).
 enum ExitCode {
@@ -15,6 +21,21 @@ enum ExitCode {
   kOutput = 5,
   kInterrupted = 130
 };
+
+struct ExitMeaning {
+  ExitCode code;
+  const char* meaning;
+};
+
+constexpr ExitMeaning kExitMeanings[] = {
+    {kDone, "done"},
+    {kFailed, "the computation failed"},
+    {kUsage, "usage: an unknown option, or a value that is wrong whatever the data"},
+    {kBadInput,
+     "an input is wrong in itself: missing, unreadable, truncated, not finite, without faces"},
+    {kMismatch, "inputs contradict each other or the request"},
+    {kOutput, "an output cannot be written, or exists and may not be replaced"},
+    {kInterrupted, "interrupted; no output is half-written"}};
 
 /// Messages of the command go to `stream` from now on.
 void say_to(std::ostream& stream);

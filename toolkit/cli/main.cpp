@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -19,18 +20,13 @@
 #include "plugins/c/plugins.h"
 #include "samples/head/sample_operation.h"
 #include "toolkit/cli/command_line.h"
-#include "toolkit/cli/completion.h"
-#include "toolkit/cli/dry_run.h"
 #include "toolkit/cli/exit_code.h"
-#include "toolkit/cli/failed_allocation.h"
 #include "toolkit/cli/manual.h"
 #include "toolkit/cli/run_command.h"
-#include "toolkit/cli/terminal_text.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/operations/listing.h"
-#include "toolkit/operations/marker_operation.h"
-#include "toolkit/operations/memory_use.h"
+#include "toolkit/operations/operation.h"
+#include "toolkit/operations/this_process.h"
 
 #ifdef MIMETRA_HAS_VTK
 #include "toolkit/pictures/picture_formats.h"
@@ -43,6 +39,60 @@
 #ifdef MIMETRA_HAS_MPI
 #include "toolkit/cli/mpi_ranks.h"
 #endif
+
+namespace {
+
+/// Bytes that were asked for when memory was last refused to the program's own code; 0 where that
+/// did not happen, or happened in a library of others.
+std::atomic<std::size_t> failed_allocation = 0;
+
+void* noted(void* memory, std::size_t bytes) {
+  if (!memory) failed_allocation = bytes;
+  return memory;
+}
+
+}  // namespace
+
+// std::bad_alloc does not say how much was asked for. The linker sends the program's calls here
+// (--wrap, in CMakeLists.txt); __real_NAME is the function itself.
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): the linker's names
+extern "C" {
+void* __real_malloc(std::size_t bytes);
+void* __real_realloc(void* memory, std::size_t bytes);
+void* __real__Znwm(std::size_t bytes);
+void* __real__ZnwmSt11align_val_t(std::size_t bytes, std::align_val_t alignment);
+
+void* __wrap_malloc(std::size_t bytes);
+void* __wrap_malloc(std::size_t bytes) {
+  return noted(__real_malloc(bytes), bytes);
+}
+
+void* __wrap_realloc(void* memory, std::size_t bytes);
+void* __wrap_realloc(void* memory, std::size_t bytes) {
+  return noted(__real_realloc(memory, bytes), bytes);
+}
+
+void* __wrap__Znwm(std::size_t bytes);
+void* __wrap__Znwm(std::size_t bytes) {
+  try {
+    return __real__Znwm(bytes);
+  } catch (const std::bad_alloc&) {
+    failed_allocation = bytes;
+    throw;
+  }
+}
+
+void* __wrap__ZnwmSt11align_val_t(std::size_t bytes, std::align_val_t alignment);
+void* __wrap__ZnwmSt11align_val_t(std::size_t bytes, std::align_val_t alignment) {
+  try {
+    return __real__ZnwmSt11align_val_t(bytes, alignment);
+  } catch (const std::bad_alloc&) {
+    failed_allocation = bytes;
+    throw;
+  }
+}
+}
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
 
 namespace {
 
@@ -104,7 +154,7 @@ void run(const std::vector<std::string>& arguments, const mimetra::Context& cont
 }
 
 std::string memory_message() {
-  const auto asked = static_cast<double>(mimetra::cli::failed_allocation());
+  const auto asked = static_cast<double>(failed_allocation);
   return "not enough memory: " +
          (asked > 0 ? mimetra::cli::megabytes(asked) + " more were asked for, and "
                     : std::string()) +

@@ -2,25 +2,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include "toolkit/operations/json.h"
+#include "toolkit/cli/command.h"
+#include "toolkit/cli/exit_code.h"
+#include "toolkit/io/json_text.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra::cli {
 
 namespace {
-
-struct ExitCodeLine {
-  const char* code;
-  const char* meaning;
-};
-
-constexpr ExitCodeLine kExitCodes[] = {
-    {"0", "done"},
-    {"1", "the computation failed"},
-    {"2", "usage: an unknown option, or a value that is wrong whatever the data"},
-    {"3", "an input is wrong in itself: missing, unreadable, truncated, not finite, without faces"},
-    {"4", "inputs contradict each other or the request"},
-    {"5", "an output cannot be written, or exists and may not be replaced"},
-    {"130", "interrupted; no output is half-written"}};
 
 /// Text as roff shows it: a hyphen is a minus sign, a leading dot is not a request.
 std::string roff(const std::string& text) {
@@ -46,7 +35,7 @@ std::string command_section(const Command& command) {
   std::string text =
       ".SS " + roff(synopsis(command)) + "\n" + roff(command.operation->summary) + ".\n";
   for (const Input& input : command.positionals) {
-    text += ".TP\n.I " + roff(upper(input.name)) + "\n" + roff(input.help) + "\n";
+    text += ".TP\n.I " + roff(upper_case(input.name)) + "\n" + roff(input.help) + "\n";
   }
   for (const std::string& heading : headings_of(command)) {
     if (heading == CommandOption::kCommon) continue;
@@ -77,6 +66,70 @@ std::vector<CommandOption> common_options(const std::vector<Command>& commands) 
     if (own.size() > common.size()) common = std::move(own);
   }
   return common;
+}
+
+/// The manual page mimetra(1), in roff.
+std::string man_page(const std::vector<Command>& commands) {
+  std::string text =
+      ".TH MIMETRA 1 \"\" \"mimetra " MIMETRA_VERSION
+      "\" \"User Commands\"\n"
+      ".SH NAME\nmimetra \\- region\\-based deformation transfer for mesh sequences\n"
+      ".SH SYNOPSIS\n.B mimetra\n.I COMMAND\n[\\fIOPTIONS\\fR] [\\fIINPUTS\\fR]\n"
+      ".SH COMMANDS\n";
+  for (const Command& command : commands) text += command_section(command);
+  text += ".SH COMMON OPTIONS\n";
+  for (const CommandOption& option : common_options(commands)) {
+    text += ".TP\n.B " + roff(forms_of(option)) + "\n" + roff(option.help) + "\n";
+  }
+  text += ".SH EXIT STATUS\n";
+  for (const ExitMeaning& exit : kExitMeanings) {
+    text += ".TP\n.B " + std::to_string(exit.code) + "\n" + roff(exit.meaning) + "\n";
+  }
+  return text;
+}
+
+/// The reference of all commands, in Markdown.
+std::string reference_page(const std::vector<Command>& commands) {
+  std::string text =
+      "# Commands\n\nMade by `mimetra manual --format markdown` from the table of operations.\n";
+  const auto table_of = [](const std::vector<CommandOption>& options, const std::string& heading) {
+    std::string rows;
+    for (const CommandOption& option : options) {
+      if (option.group != heading) continue;
+      rows += "| `" + forms_of(option) + "` | " + cell(option.help) + " |\n";
+    }
+    if (rows.empty()) return rows;
+    const bool has_own = !heading.empty() && heading != CommandOption::kCommon;
+    return "\n| " + (has_own ? heading : "option") + " | |\n| --- | --- |\n" + rows;
+  };
+  for (const Command& command : commands) {
+    text += "\n## " + command.operation->name + "\n\n" + command.operation->summary + ".\n\n```\n" +
+            synopsis(command) + "\n```\n";
+    for (const Input& input : command.positionals) {
+      text += "\n`" + upper_case(input.name) + "`: " + input.help + "\n";
+    }
+    for (const std::string& heading : headings_of(command)) {
+      if (heading != CommandOption::kCommon) text += table_of(command.options, heading);
+    }
+    if (!command.operation->measures.empty()) {
+      text += "\n| [prints](glossary.md) | |\n| --- | --- |\n";
+      for (const Measure& measure : command.operation->measures) {
+        text += "| " + cell(measure.name) + " | " + cell(measure.meaning) + " |\n";
+      }
+    }
+    text += "\n```\n";
+    for (const std::string& example : command.operation->examples) {
+      text += "mimetra " + example + "\n";
+    }
+    text += "```\n";
+  }
+  text += "\n## Common options\n" + table_of(common_options(commands), CommandOption::kCommon);
+  text += "\n## Formats\n\n[formats.md](formats.md) lists all that is read and written.\n";
+  text += "\n## Exit codes\n\n| code | |\n| --- | --- |\n";
+  for (const ExitMeaning& exit : kExitMeanings) {
+    text += "| " + std::to_string(exit.code) + " | " + exit.meaning + " |\n";
+  }
+  return text;
 }
 
 enum class ManualFormat { man, markdown };
@@ -118,68 +171,6 @@ Operation manual_operation(const OperationTable& table) {
 }
 
 }  // namespace
-
-std::string man_page(const std::vector<Command>& commands) {
-  std::string text =
-      ".TH MIMETRA 1 \"\" \"mimetra " MIMETRA_VERSION
-      "\" \"User Commands\"\n"
-      ".SH NAME\nmimetra \\- region\\-based deformation transfer for mesh sequences\n"
-      ".SH SYNOPSIS\n.B mimetra\n.I COMMAND\n[\\fIOPTIONS\\fR] [\\fIINPUTS\\fR]\n"
-      ".SH COMMANDS\n";
-  for (const Command& command : commands) text += command_section(command);
-  text += ".SH COMMON OPTIONS\n";
-  for (const CommandOption& option : common_options(commands)) {
-    text += ".TP\n.B " + roff(forms_of(option)) + "\n" + roff(option.help) + "\n";
-  }
-  text += ".SH EXIT STATUS\n";
-  for (const ExitCodeLine& line : kExitCodes) {
-    text += std::string(".TP\n.B ") + line.code + "\n" + roff(line.meaning) + "\n";
-  }
-  return text;
-}
-
-std::string reference_page(const std::vector<Command>& commands) {
-  std::string text =
-      "# Commands\n\nMade by `mimetra manual --format markdown` from the table of operations.\n";
-  const auto table_of = [](const std::vector<CommandOption>& options, const std::string& heading) {
-    std::string rows;
-    for (const CommandOption& option : options) {
-      if (option.group != heading) continue;
-      rows += "| `" + forms_of(option) + "` | " + cell(option.help) + " |\n";
-    }
-    if (rows.empty()) return rows;
-    const bool has_own = !heading.empty() && heading != CommandOption::kCommon;
-    return "\n| " + (has_own ? heading : "option") + " | |\n| --- | --- |\n" + rows;
-  };
-  for (const Command& command : commands) {
-    text += "\n## " + command.operation->name + "\n\n" + command.operation->summary + ".\n\n```\n" +
-            synopsis(command) + "\n```\n";
-    for (const Input& input : command.positionals) {
-      text += "\n`" + upper(input.name) + "`: " + input.help + "\n";
-    }
-    for (const std::string& heading : headings_of(command)) {
-      if (heading != CommandOption::kCommon) text += table_of(command.options, heading);
-    }
-    if (!command.operation->measures.empty()) {
-      text += "\n| [prints](glossary.md) | |\n| --- | --- |\n";
-      for (const Measure& measure : command.operation->measures) {
-        text += "| " + cell(measure.name) + " | " + cell(measure.meaning) + " |\n";
-      }
-    }
-    text += "\n```\n";
-    for (const std::string& example : command.operation->examples) {
-      text += "mimetra " + example + "\n";
-    }
-    text += "```\n";
-  }
-  text += "\n## Common options\n" + table_of(common_options(commands), CommandOption::kCommon);
-  text += "\n## Formats\n\n[formats.md](formats.md) lists all that is read and written.\n";
-  text += "\n## Exit codes\n\n| code | |\n| --- | --- |\n";
-  for (const ExitCodeLine& line : kExitCodes) {
-    text += std::string("| ") + line.code + " | " + line.meaning + " |\n";
-  }
-  return text;
-}
 
 void add_manual(OperationTable& table) {
   table.add(manual_operation(table));

@@ -1,19 +1,15 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
-#include "toolkit/cli/command.h"
+#include "toolkit/operations/operation.h"
 
 namespace mimetra::cli {
 
-/// The manual page mimetra(1), in roff.
-std::string man_page(const std::vector<Command>& commands);
+/// Adds the operation `completion`, which prints scripts that let a shell complete commands,
+/// options, their choices and files. The table must outlive the call.
+void add_completion(OperationTable& table);
 
-/// The reference of all commands, in Markdown.
-std::string reference_page(const std::vector<Command>& commands);
-
-/// Adds the operation `manual`, which prints them. The table must outlive the call.
+/// Adds the operation `manual`, which prints the manual page mimetra(1) or the reference of all
+/// commands. The table must outlive the call.
 void add_manual(OperationTable& table);
 
 }  // namespace mimetra::cli

@@ -1,9 +1,14 @@
 #pragma once
 
+#include <string>
+
 #include "toolkit/cli/command_line.h"
 #include "toolkit/mesh/context.h"
 
 namespace mimetra::cli {
+
+/// As people read it: "238 MB".
+std::string megabytes(double bytes);
 
 /// Ends the process's current work with Cancelled at the next progress report; async-signal-safe.
 void interrupt();

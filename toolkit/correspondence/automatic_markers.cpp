@@ -6,7 +6,6 @@
 #include <string_view>
 #include <utility>
 
-#include "toolkit/correspondence/marker_check.h"
 #include "toolkit/mesh/similarity.h"
 #include "toolkit/mesh/text.h"
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@
 #include <CGAL/Simple_cartesian.h>
 
 #include "toolkit/mesh/normals.h"
+#include "toolkit/mesh/surface.h"
 
 namespace mimetra {
 namespace {
@@ -76,7 +78,7 @@ struct ClosestSurface::State {
       : positions(own_positions),
         triangles(own_triangles),
         normals(triangle_normals(positions, triangles)),
-        borders(border_edges(triangles)),
+        borders(border_edges(static_cast<int>(positions.rows()), triangles)),
         border_edge(3 * triangles.rows(), false),
         border_vertex(positions.rows(), false) {
     for (const BorderEdge& edge : borders) {
@@ -174,8 +176,8 @@ class NearestFirst {
   Shares shares_ = Shares::Zero();
 };
 
-template <typename Surface, typename Measure>
-SurfacePoint nearest(const Surface& surface, const Vector3d& point, const Vector3d& normal,
+template <typename State, typename Measure>
+SurfacePoint nearest(const State& surface, const Vector3d& point, const Vector3d& normal,
                      Measure measure) {
   const auto faces = [&](int t) { return surface.faces(t, normal); };
   NearestFirst search(point, surface.corners.begin(), faces, measure);
@@ -242,27 +244,11 @@ Seen ClosestSurface::seen_from(const Vector3d& point, const Vector3d& direction)
   return s.faces(static_cast<int>(*hit - s.corners.begin()), -direction) ? Seen::front : Seen::back;
 }
 
-std::vector<BorderEdge> border_edges(const Triangles& triangles) {
-  using Entry = std::tuple<VertexIndex, VertexIndex, int, int>;
-  std::vector<Entry> entries;
-  for (int t = 0; t < triangles.rows(); ++t) {
-    for (int c = 0; c < 3; ++c) {
-      const VertexIndex a = triangles(t, c), b = triangles(t, (c + 1) % 3);
-      if (a != b) entries.emplace_back(std::min(a, b), std::max(a, b), t, c);
-    }
-  }
-  std::ranges::sort(entries);
-  const auto edge = [](const Entry& entry) {
-    return std::pair(std::get<0>(entry), std::get<1>(entry));
-  };
+std::vector<BorderEdge> border_edges(int vertices, const Triangles& triangles) {
   std::vector<BorderEdge> borders;
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const bool as_before = i > 0 && edge(entries[i - 1]) == edge(entries[i]);
-    const bool as_after = i + 1 < entries.size() && edge(entries[i + 1]) == edge(entries[i]);
-    if (!as_before && !as_after) {
-      borders.push_back({std::get<2>(entries[i]), std::get<3>(entries[i])});
-    }
-  }
+  Surface(vertices, triangles).for_each_edge([&borders](std::span<const int> sides) {
+    if (sides.size() == 1) borders.push_back({sides[0] / 3, sides[0] % 3});
+  });
   return borders;
 }
 

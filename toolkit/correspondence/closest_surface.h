@@ -48,12 +48,13 @@ class ClosestSurface {
   std::unique_ptr<State> state_;
 };
 
-/// Edges that bound one triangle only, each from its triangle's corner on.
+/// An edge of one triangle only.
 struct BorderEdge {
   int triangle;
   int corner;  ///< from this corner to the next
 };
-std::vector<BorderEdge> border_edges(const Triangles& triangles);
+/// All of a mesh of so many vertices, as Surface::for_each_edge(). Throws as Surface.
+std::vector<BorderEdge> border_edges(int vertices, const Triangles& triangles);
 
 /// Centroid of each triangle (M x 3).
 Positions centroids(const Eigen::Ref<const Positions>& positions, const Triangles& triangles);

@@ -62,4 +62,23 @@ CorrespondenceQuality quality_of(const Correspondence& pairs, double size);
 Correspondence pair_triangles(const SurfaceFit& fitted, const Triangles& source,
                               const TriMesh& target, const Context& context = {});
 
+/// A source deformed onto a target, and their triangles in pairs.
+struct FoundCorrespondence {
+  Correspondence correspondence;
+  SurfaceFit fit;
+  CorrespondenceQuality quality;
+  /// The target's faces lead the other way round than the source's: they were paired as if turned.
+  bool inside_out = false;
+};
+
+/// Deforms the source by fit_to_surface() and pairs its triangles by pair_triangles(). Parts that
+/// no marker reaches, such as teeth and eyes, follow the similarity of the fitted surface around
+/// them (200 vertices) and are paired where they lie over each other then: a part of the target has
+/// partners if three quarters of its triangles find one, on average at most a tenth of the part's
+/// size away. Throws what these functions and is_inside_out() throw.
+FoundCorrespondence find_correspondence(const TriMesh& source, const TriMesh& target,
+                                        const std::vector<Marker>& markers,
+                                        const SurfaceFitOptions& options = {},
+                                        const Context& context = {});
+
 }  // namespace mimetra

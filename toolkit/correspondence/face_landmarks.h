@@ -1,10 +1,13 @@
 #pragma once
 
+#include <array>
+#include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "toolkit/correspondence/landmark_finder.h"
+#include "toolkit/correspondence/mesh_drawing.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/mesh/option.h"
 #include "toolkit/mesh/tri_mesh.h"
@@ -74,5 +77,36 @@ struct FaceLandmarks {
 /// of range; Cancelled; what the finder throws.
 FaceLandmarks find_landmarks(const Head& head, const LandmarkFinder& finder,
                              const FaceSearchOptions& options = {}, const Context& context = {});
+
+/// A landmark carried back from a drawing onto the surface.
+struct SeenPoint {
+  int triangle;
+  Eigen::Vector3d position;
+};
+
+/// Landmarks of a face in a drawing.
+struct SeenFace {
+  /// None where no wanted triangle is near.
+  std::array<std::optional<SeenPoint>, kFaceLandmarks> points;
+  double confidence = 0;
+};
+
+/// Draws, finds, and carries each landmark back to the nearest pixel that shows a wanted triangle's
+/// outside; none where there is no face.
+std::optional<SeenFace> seen_face(const MeshPainter& painter, const MeshView& view,
+                                  const LandmarkFinder& finder,
+                                  const std::function<bool(int)>& wanted);
+
+/// A face as it is on a mesh.
+struct FacePlace {
+  /// Rows: right in a picture, up, where it looks.
+  Eigen::Matrix3d axes;
+  /// Middle of brows, nose, eyes and lips, and their root mean square distance from it.
+  Eigen::Vector3d middle;
+  double radius;
+};
+
+/// None where a landmark is not seen, or the nose does not stand out.
+std::optional<FacePlace> face_place(const SeenFace& seen);
 
 }  // namespace mimetra

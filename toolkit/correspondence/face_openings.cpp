@@ -8,8 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "toolkit/mesh/edge_graph.h"
-#include "toolkit/mesh/weld.h"
+#include "toolkit/mesh/surface.h"
 
 namespace mimetra {
 namespace {
@@ -41,17 +40,34 @@ const std::array<Scheme, 3>& schemes() {
   return all;
 }
 
+/// The welded surface that openings are looked for on.
+struct Skin {
+  explicit Skin(const TriMesh& rest)
+      : positions(rest.positions),
+        weld(Weld::exact(rest.positions)),
+        surface(rest.connectivity.triangles, weld) {}
+
+  double distance(VertexIndex a, VertexIndex b) const {
+    return (positions.row(a) - positions.row(b)).norm();
+  }
+
+  const Positions& positions;
+  Weld weld;
+  Surface surface;
+};
+
 /// What is reached along edges from two groups of vertices.
 struct Reached {
   std::map<VertexIndex, double> distance;  ///< from the nearer group
   std::map<VertexIndex, int> group;        ///< that one, 0 or 1
 };
 
-Reached reached_from(const EdgeGraph& graph, const std::array<std::vector<VertexIndex>, 2>& groups,
+Reached reached_from(const Skin& skin, const std::array<std::vector<VertexIndex>, 2>& groups,
                      double reach) {
   Reached result;
   for (int g = 0; g < 2; ++g) {
-    for (const auto& [vertex, distance] : graph.within(reach, groups[g])) {
+    for (const auto& [vertex, distance] :
+         within_reach(skin.surface, skin.positions, reach, groups[g])) {
       const auto known = result.distance.find(vertex);
       if (known != result.distance.end() && known->second <= distance) continue;
       result.distance[vertex] = distance;
@@ -60,18 +76,6 @@ Reached reached_from(const EdgeGraph& graph, const std::array<std::vector<Vertex
   }
   return result;
 }
-
-/// The welded surface that openings are looked for on.
-struct Skin {
-  explicit Skin(const TriMesh& rest)
-      : positions(rest.positions),
-        weld(Weld::exact(rest.positions)),
-        graph(positions, weld.welded(rest.connectivity.triangles)) {}
-
-  const Positions& positions;
-  Weld weld;
-  EdgeGraph graph;
-};
 
 /// An opening's landmarks on the skin.
 struct Edges {
@@ -104,10 +108,11 @@ double way_between(const Skin& skin, const Edges& edges, const Reached& reached)
   double shortest = std::numeric_limits<double>::infinity();
   for (const auto& [vertex, group] : reached.group) {
     if (group != 0 || !edges.is_in_band(skin.positions.row(vertex))) continue;
-    for (const auto& [to, length] : skin.graph.edges(vertex)) {
+    for (const VertexIndex to : skin.surface.neighbors(vertex)) {
       const auto other = reached.group.find(to);
       if (other == reached.group.end() || other->second != 1) continue;
-      shortest = std::min(shortest, reached.distance.at(vertex) + length + reached.distance.at(to));
+      shortest = std::min(shortest, reached.distance.at(vertex) + skin.distance(vertex, to) +
+                                        reached.distance.at(to));
     }
   }
   return shortest;
@@ -118,7 +123,7 @@ FaceOpening opening_between(const Skin& skin, const Scheme& scheme,
                             const std::map<int, VertexIndex>& vertex_of) {
   const Edges edges(skin, scheme, vertex_of);
   FaceOpening opening{scheme.name, {}, {}, edges.width};
-  const Reached reached = reached_from(skin.graph, edges.landmarks, edges.width);
+  const Reached reached = reached_from(skin, edges.landmarks, edges.width);
   const double way = way_between(skin, edges, reached);
   if (way < kDetour * edges.apart) return opening;
   const double reach = std::min(kEdgeReach * edges.width, kShareOfWay * way);

@@ -17,7 +17,7 @@ namespace {
 /// Half of the weight, but for rounding.
 constexpr double kHalf = 0.5 - 1e-9;
 
-void check_sizes(const TriMesh& source, const TriMesh& target, const Correspondence& pairs) {
+void check_pairs(const TriMesh& source, const TriMesh& target, const Correspondence& pairs) {
   const auto from = static_cast<int>(source.connectivity.triangles.rows());
   const auto to = static_cast<int>(target.connectivity.triangles.rows());
   if (pairs.source_triangles == from && pairs.target_triangles() == to) return;
@@ -120,7 +120,7 @@ Pairing::Pairing(const TriMesh& source, const TriMesh& target, Correspondence pa
     : pairs_(std::move(pairs)),
       source_triangles_(source.connectivity.triangles),
       source_vertices_(static_cast<int>(source.positions.rows())) {
-  check_sizes(source, target, pairs_);
+  check_pairs(source, target, pairs_);
   const Triangles& triangles = target.connectivity.triangles;
   const Positions placed = placed_over(source, target, pairs_);
   const Triangles facing = leads_other_way(placed, source_triangles_, target, pairs_)
@@ -226,6 +226,21 @@ std::vector<int> with_partners(std::vector<int> triangles, const Pairing* pairin
            !pairing->triangles().has_partner(t);
   });
   return triangles;
+}
+
+void check_sizes(const Positions& source_rest, const Positions& target_rest,
+                 const Pairing* pairing) {
+  const auto sizes = [](Eigen::Index source, Eigen::Index target) {
+    return "the source has " + std::to_string(source) + " vertices, the target " +
+           std::to_string(target);
+  };
+  const std::string found = sizes(source_rest.rows(), target_rest.rows());
+  if (!pairing) {
+    if (source_rest.rows() == target_rest.rows()) return;
+    throw MismatchError(found + "; both need the same connectivity");
+  }
+  const std::string expected = sizes(pairing->source_vertices(), pairing->target_vertices());
+  if (found != expected) throw MismatchError(found + "; in their pairing " + expected);
 }
 
 }  // namespace mimetra

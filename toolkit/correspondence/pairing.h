@@ -68,4 +68,9 @@ class Pairing {
 /// Those of some triangles of a target that have a partner; all without a pairing (null).
 std::vector<int> with_partners(std::vector<int> triangles, const Pairing* pairing);
 
+/// Throws MismatchError where rest poses have not the vertices of the pairing, or without one
+/// (null) different numbers of them.
+void check_sizes(const Positions& source_rest, const Positions& target_rest,
+                 const Pairing* pairing);
+
 }  // namespace mimetra

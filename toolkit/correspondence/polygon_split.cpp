@@ -3,7 +3,7 @@
 #include <numeric>
 #include <vector>
 
-#include "toolkit/mesh/outline.h"
+#include "toolkit/mesh/face_order.h"
 
 namespace mimetra {
 namespace {

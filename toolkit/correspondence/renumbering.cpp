@@ -1,7 +1,6 @@
 #include "toolkit/correspondence/renumbering.h"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -11,7 +10,7 @@
 
 #include "toolkit/correspondence/polygon_split.h"
 #include "toolkit/correspondence/vertex_map.h"
-#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/disjoint_sets.h"
 #include "toolkit/mesh/weld.h"
 
 namespace mimetra {
@@ -80,23 +79,16 @@ Renumbering by_graph_and_sides(const MapSide& from, const MapSide& to) {
 
 /// Connected part of each vertex: its lowest vertex (N).
 std::vector<VertexIndex> parts_of(const MapSide& side) {
-  std::vector<VertexIndex> lower(side.vertices);
-  std::iota(lower.begin(), lower.end(), 0);
-  const auto lowest = [&lower](VertexIndex v) {
-    while (lower[v] != v) v = lower[v] = lower[lower[v]];
-    return v;
-  };
+  DisjointSets sets(side.vertices);
   for (int f = 0; f < side.polygons->size(); ++f) {
     const int begin = side.polygons->offsets[f], end = side.polygons->offsets[f + 1];
     for (int corner = begin; corner < end; ++corner) {
-      const VertexIndex a = lowest(side.polygons->corners[begin]);
-      const VertexIndex b = lowest(side.polygons->corners[corner]);
-      lower[std::max(a, b)] = std::min(a, b);
+      sets.join(side.polygons->corners[begin], side.polygons->corners[corner]);
     }
   }
   std::vector<VertexIndex> parts;
   parts.reserve(static_cast<std::size_t>(side.vertices));
-  for (VertexIndex v = 0; v < side.vertices; ++v) parts.push_back(lowest(v));
+  for (VertexIndex v = 0; v < side.vertices; ++v) parts.push_back(sets.lowest(v));
   return parts;
 }
 
@@ -214,6 +206,32 @@ MapSide side_of(const Connectivity& connectivity, const Positions* positions = n
   return {&connectivity.polygons, connectivity.vertices, positions};
 }
 
+/// A sequence on the vertices of another mesh.
+class RenumberedFrames : public FrameSource {
+ public:
+  RenumberedFrames(std::shared_ptr<const FrameSource> source,
+                   std::shared_ptr<const Connectivity> connectivity,
+                   std::vector<VertexIndex> vertices)
+      : FrameSource(source->header()), source_(std::move(source)), vertices_(std::move(vertices)) {
+    header_.connectivity = std::move(connectivity);
+    header_.rest = Positions(header_.rest(vertices_, Eigen::all));
+  }
+
+  bool is_quick() const override { return source_->is_quick(); }
+
+ private:
+  void read_frames(int first, FramesView poses) const override {
+    const FrameBlock block(*source_, first, static_cast<int>(poses.rows()));
+    for (int row = 0; row < block.frames(); ++row) {
+      Eigen::Map<Positions>(poses.row(row).data(), poses.cols() / 3, 3) =
+          block.frame(row)(vertices_, Eigen::all);
+    }
+  }
+
+  std::shared_ptr<const FrameSource> source_;
+  std::vector<VertexIndex> vertices_;
+};
+
 }  // namespace
 
 int Renumbering::moved() const {
@@ -249,6 +267,25 @@ Renumbering renumbering(const TriMesh& reference, const TriMesh& other) {
   if (found.found()) return found;
   Renumbering welded = by_places(reference, other);
   return welded.found() ? welded : found;
+}
+
+std::shared_ptr<const FrameSource> renumbered(std::shared_ptr<const FrameSource> source,
+                                              std::shared_ptr<const Connectivity> connectivity,
+                                              std::vector<VertexIndex> vertices) {
+  const bool are_there = std::ranges::all_of(
+      vertices, [&source](VertexIndex v) { return v >= 0 && v < source->vertices(); });
+  if (static_cast<int>(vertices.size()) != connectivity->vertices || !are_there) {
+    throw std::invalid_argument("expected a vertex of the source for each of " +
+                                std::to_string(connectivity->vertices) + " vertices");
+  }
+  return std::make_shared<const RenumberedFrames>(std::move(source), std::move(connectivity),
+                                                  std::move(vertices));
+}
+
+Field renumbered(const Field& field, const std::vector<VertexIndex>& vertices) {
+  Field result = field;
+  result.values = field.values(vertices, Eigen::all);
+  return result;
 }
 
 }  // namespace mimetra

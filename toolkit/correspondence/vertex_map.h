@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,40 @@
 /// Maps of the vertices of one mesh onto those of another that has the same faces. Internal to
 /// renumbering().
 namespace mimetra {
+
+/// What lies beyond a side of a face.
+enum class EdgeKind : std::uint8_t {
+  inner,    ///< one other face, oriented alike
+  border,   ///< nothing; also for all sides of a face that repeats a vertex
+  tangled,  ///< more than one other face, or one oriented the other way
+};
+
+/// Polygons as they are given, and how they are joined. The half-edge c of a mesh leads from corner
+/// c of its polygons to the next corner of that polygon.
+struct FaceGraph {
+  /// Throws std::invalid_argument that names the first face with a vertex outside 0 ..
+  /// `vertices` - 1.
+  FaceGraph(int vertices, const Polygons& polygons);
+
+  int size() const { return static_cast<int>(next.size()); }
+
+  std::vector<VertexIndex> vertex;  ///< where each half-edge begins
+  std::vector<int> face, next;
+  std::vector<int> opposite;  ///< -1 but for inner edges
+  std::vector<EdgeKind> kind;
+};
+
+/// Colours of the half-edges of two meshes by how faces are joined around them, however far away:
+/// half-edges of one colour may be each other's image, others cannot. Takes n log n steps.
+///
+/// [Hopcroft. An n log n algorithm for minimizing states in a finite automaton. Theory of Machines
+/// and Computations, 1971]: half-edges are states, the next one and the one across their letters.
+struct Colours {
+  Colours(const FaceGraph& a, const FaceGraph& b);
+
+  int count = 0;                ///< colours are 0 to count - 1
+  std::vector<int> of_a, of_b;  ///< colour of each half-edge
+};
 
 /// What one of the two meshes is in the search.
 struct MapSide {

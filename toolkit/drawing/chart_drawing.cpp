@@ -1,4 +1,4 @@
-#include "toolkit/drawing/vtk_drawing.h"
+#include "toolkit/drawing/painter.h"
 
 #include <algorithm>
 #include <array>

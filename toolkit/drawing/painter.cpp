@@ -7,7 +7,7 @@
 #include <dlfcn.h>
 
 #include "toolkit/drawing/sheet_layout.h"
-#include "toolkit/operations/this_binary.h"
+#include "toolkit/operations/this_process.h"
 
 namespace mimetra {
 

@@ -25,6 +25,11 @@ class Painter {
 /// of another version.
 const Painter& painter();
 
+/// In the library: what its Painter does, with VTK's renderers.
+Image drawn(const Sheet& sheet, const Context& context);
+Image drawn(const std::vector<Chart>& row, const ChartSize& size);
+std::string encoded_png(const Image& image);
+
 }  // namespace mimetra
 
 /// What the library shows; null where it is of another version.

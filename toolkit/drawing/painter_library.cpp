@@ -4,7 +4,6 @@
 
 #include "toolkit/drawing/offscreen_window.h"
 #include "toolkit/drawing/painter.h"
-#include "toolkit/drawing/vtk_drawing.h"
 
 namespace mimetra {
 

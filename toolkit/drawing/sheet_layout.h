@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "toolkit/drawing/sheet.h"
+#include "toolkit/drawing/picture.h"
 
 namespace mimetra {
 

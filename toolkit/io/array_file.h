@@ -1,13 +1,19 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <vector>
 
-#include "toolkit/io/npy_values.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/mesh/mesh_sequence.h"
 
 namespace mimetra {
+
+/// An array of any shape, in C order.
+struct NumericArray {
+  std::vector<std::size_t> shape;
+  std::vector<double> values;
+};
 
 /// Reads a NumPy array of shape F x N x 3, or N x 3 (one frame), float32 or float64, either byte
 /// order and either memory order, as F x 3N. Throws IoError, Cancelled.

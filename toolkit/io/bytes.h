@@ -5,11 +5,13 @@
 #include <cstring>
 #include <span>
 #include <string>
-#include <string_view>
 #include <type_traits>
 
 /// Numbers in files, in either byte order. Internal to the readers and writers.
 namespace mimetra {
+
+/// Deflate makes no more bytes than this of one.
+inline constexpr std::uint64_t kMostInflated = 1032;
 
 /// An unsigned integer of so many bytes.
 template <std::size_t Bytes>

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/json_text.h"
-#include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {

@@ -1,4 +1,4 @@
-#include "toolkit/io/draco_mesh.h"
+#include "toolkit/io/gltf_values.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -8,8 +8,8 @@
 #include <draco/mesh/mesh.h>
 
 #include "toolkit/io/scene.h"
-#include "toolkit/mesh/coordinate.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
 namespace {

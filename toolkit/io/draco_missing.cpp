@@ -1,4 +1,4 @@
-#include "toolkit/io/draco_mesh.h"
+#include "toolkit/io/gltf_values.h"
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {

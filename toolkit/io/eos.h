@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "toolkit/model/morphable_model.h"
+#include "toolkit/model/blendshape_model.h"
 
 namespace mimetra {
 

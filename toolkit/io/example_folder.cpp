@@ -4,6 +4,7 @@
 
 #include "toolkit/io/csv.h"
 #include "toolkit/io/mesh_file.h"
+#include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 
@@ -95,8 +96,7 @@ ExampleFolder read_examples(const fs::path& path, const Connectivity& expected,
         {file.stem().string(), file, read_positions(file, expected, expected_name)});
   }
   check_shape_names(folder.shapes);
-  std::error_code unreadable;
-  if (fs::exists(path / kWeightFile, unreadable)) {
+  if (is_there(path / kWeightFile)) {
     CsvReader csv(path / kWeightFile);
     read_example_rows(csv, folder);
   }

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <functional>
-#include <optional>
 #include <utility>
 
 #include "toolkit/mesh/text.h"

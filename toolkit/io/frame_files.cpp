@@ -11,6 +11,7 @@
 #include "toolkit/io/file_numbers.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/sequence_format.h"
+#include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 
@@ -222,12 +223,6 @@ std::string fitting_pattern(const fs::path& pattern, const std::vector<fs::path>
   return (pattern.parent_path() / (before + '*' + after)).string();
 }
 
-/// Without a slash at its end, so that the folder that it stands in is its parent.
-fs::path normal_absolute(const fs::path& path) {
-  const fs::path normal = fs::absolute(path).lexically_normal();
-  return normal.has_filename() ? normal : normal.parent_path();
-}
-
 struct FrameRange {
   std::optional<int> first;
   std::optional<int> last;
@@ -370,9 +365,10 @@ std::optional<int> end_of_frames(const std::optional<std::string>& range) {
 }
 
 fs::path beside(const fs::path& sequence, const std::string& suffix) {
-  fs::path name = sequence.lexically_normal();
-  if (!name.has_filename()) name = name.parent_path();
-  if (name.filename() == "." || name.filename() == "..") name = normal_absolute(name);
+  fs::path name = without_trailing_slash(sequence);
+  if (name.filename() == "." || name.filename() == "..") {
+    name = without_trailing_slash(fs::absolute(name));
+  }
   const SequenceFormat* format = sequence_format(name);
   if (format && format->has_companions) name.replace_extension();
   return name += suffix;

@@ -11,7 +11,7 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-std::string place_of(const fs::path& folder) {
+std::string folder_text(const fs::path& folder) {
   const std::string text = folder.string();
   return text.empty() || text.back() == '/' ? text : text + '/';
 }
@@ -170,10 +170,11 @@ FrameSeries series_in_folder(std::vector<fs::path> files, const fs::path& folder
   const FileNumbers numbers(files);
   auto [found, strangers] = split(std::move(files), numbers);
   if (!strangers.empty()) {
-    found.notes.push_back(
-        place_of(folder) + ": " + names_of(strangers) + (strangers.size() == 1 ? " is" : " are") +
-        " left out of the " + std::to_string(found.frames.size()) + " frames " +
-        numbers.of(found.frames.front()).series + "; name files by a pattern to take them");
+    found.notes.push_back(folder_text(folder) + ": " + names_of(strangers) +
+                          (strangers.size() == 1 ? " is" : " are") + " left out of the " +
+                          std::to_string(found.frames.size()) + " frames " +
+                          numbers.of(found.frames.front()).series +
+                          "; name files by a pattern to take them");
   }
   if (found.rest) {
     found.notes.push_back(found.rest->string() + ": is taken for the rest pose of the other " +
@@ -183,8 +184,8 @@ FrameSeries series_in_folder(std::vector<fs::path> files, const fs::path& folder
   check_links(found.frames);
   check_numbers(found.frames, numbers);
   check_order(found.frames);
-  note_numbers(found, numbers, place_of(folder));
-  note_missing(found, place_of(folder));
+  note_numbers(found, numbers, folder_text(folder));
+  note_missing(found, folder_text(folder));
   return found;
 }
 
@@ -195,11 +196,11 @@ void check_one_series(const std::vector<fs::path>& files, const fs::path& folder
   std::vector<std::string> series, patterns;
   for (const auto& [name, size] : all) {
     series.push_back(std::to_string(size) + " files " + name);
-    patterns.push_back("'" + place_of(folder) + name + "'");
+    patterns.push_back("'" + folder_text(folder) + name + "'");
   }
   throw IoError(folder.string(), "holds several takes, " + listed(series, 4) +
                                      "; name one by a pattern, " + listed(patterns, 4) +
-                                     ", or all by '" + place_of(folder) + '*' +
+                                     ", or all by '" + folder_text(folder) + '*' +
                                      files.front().extension().string() + "'");
 }
 
@@ -212,7 +213,7 @@ void check_are_numbered(const std::vector<fs::path>& files, const fs::path& fold
                       " meshes without frame numbers (" + names_of(files) +
                       "), which look like named shapes of a model; to read them as frames in this "
                       "order, give the pattern '" +
-                      place_of(folder) + '*' + files.front().extension().string() + "'");
+                      folder_text(folder) + '*' + files.front().extension().string() + "'");
 }
 
 FrameSeries series_of_pattern(std::vector<fs::path> files, const std::string& pattern) {

@@ -1,7 +1,6 @@
 #include "toolkit/io/gltf_document.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -10,8 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/bytes.h"
-#include "toolkit/io/gltf_buffers.h"
-#include "toolkit/io/gltf_value.h"
+#include "toolkit/io/gltf_json.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"

@@ -4,16 +4,18 @@
 #include <set>
 #include <span>
 
-#include "toolkit/io/draco_mesh.h"
 #include "toolkit/io/gltf_motion.h"
-#include "toolkit/io/gltf_placement.h"
 #include "toolkit/io/gltf_values.h"
+#include "toolkit/io/gltf_write.h"
 #include "toolkit/io/scene.h"
+#include "toolkit/io/sequence_format.h"
+#include "toolkit/io/sequence_parts.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
+
 namespace {
 
 std::string number_name(const char* stem, std::size_t number) {
@@ -501,6 +503,18 @@ class GltfReader {
 
 Scene read_gltf(const fs::path& path, const Context& context) {
   return GltfReader(path, context).read();
+}
+
+SequenceFormat gltf_format() {
+  SequenceFormat format{"glTF 2.0", {".glb", ".gltf"}, false, SequenceFormat::Precision::single,
+                        open_scene, begin_gltf};
+  // Polygons by FB_ngon_encoding.
+  format.holds = {.polygons = true,
+                  .texture = HeldParts::Texture::vertices,
+                  .bare_faces = false,
+                  .exact_times = false};
+  format.write_animation = write_gltf;
+  return format;
 }
 
 }  // namespace mimetra

@@ -3,10 +3,12 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "toolkit/io/gltf_document.h"
 #include "toolkit/mesh/frame_source.h"
 
+/// The numbers of a glTF file, compressed or not. Internal to the format.
 namespace mimetra {
 
 /// The numbers that a glTF file's accessors describe. Views are decompressed when they are needed.
@@ -39,5 +41,29 @@ class GltfValues {
   std::map<std::size_t, std::string> decompressed_;
   std::size_t decompressed_bytes_ = 0;
 };
+
+/// The bytes of a view that was compressed by meshoptimizer: compression.count elements of
+/// compression.stride bytes. `what` names it in messages. Throws IoError.
+std::string decompressed(const std::string& path, const std::string& what,
+                         const GltfCompression& compression, std::string_view bytes);
+
+/// Four joints of each vertex, and their weights (N x 4).
+struct VertexJoints {
+  Frames joints, weights;
+};
+
+/// What a primitive's compressed mesh holds, integers as they are stored: its accessors say whether
+/// they are normalised. Numbers that it does not hold have no rows.
+struct DracoMesh {
+  Triangles triangles;
+  Frames positions;  ///< N x 3
+  Frames texture;    ///< N x 2
+  std::vector<VertexJoints> joints;
+};
+
+/// Decodes `bytes` with the attributes that `draco` names. `what` names the mesh in messages.
+/// Throws IoError, also where this program was built without the library.
+DracoMesh decode_draco(const std::string& path, const std::string& what, const GltfDraco& draco,
+                       std::string_view bytes);
 
 }  // namespace mimetra

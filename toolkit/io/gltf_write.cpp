@@ -1,7 +1,6 @@
 #include "toolkit/io/gltf_write.h"
 
 #include <array>
-#include <cmath>
 #include <limits>
 
 #include <nlohmann/json.hpp>
@@ -9,15 +8,14 @@
 #include "toolkit/io/binary_file.h"
 #include "toolkit/io/bytes.h"
 #include "toolkit/io/frame_files.h"
-#include "toolkit/io/gltf_numbers.h"
 #include "toolkit/io/json_text.h"
+#include "toolkit/io/mesh_formats.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/sequence_parts.h"
-#include "toolkit/io/single_precision.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/normals.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/mesh/texture.h"
+#include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
@@ -41,6 +39,42 @@ void include(GltfBounds& bounds, Eigen::Index point, const float* xyz) {
     bounds[0][c] = point == 0 ? value : std::min(bounds[0][c], value);
     bounds[1][c] = point == 0 ? value : std::max(bounds[1][c], value);
   }
+}
+
+/// `count` numbers in single precision.
+std::string float_bytes(const double* values, Eigen::Index count) {
+  std::string bytes(static_cast<std::size_t>(count) * sizeof(float), '\0');
+  for (Eigen::Index i = 0; i < count; ++i) {
+    put_little_endian(bytes.data() + sizeof(float) * static_cast<std::size_t>(i),
+                      static_cast<float>(values[i]));
+  }
+  return bytes;
+}
+
+/// Numbers of which those that are not 0 are stored, at least one.
+struct SparseNumbers {
+  std::string indices, values;
+  std::size_t stored = 0;
+};
+
+/// `values` in elements of `size`; elements with `count / 2` or more that are not 0 give nothing.
+std::optional<SparseNumbers> sparse_numbers(const double* values, Eigen::Index count, int size) {
+  SparseNumbers sparse;
+  const auto keep = [&](Eigen::Index element) {
+    append_little_endian(sparse.indices, static_cast<std::uint32_t>(element));
+    sparse.values += float_bytes(values + size * element, size);
+    ++sparse.stored;
+  };
+  for (Eigen::Index element = 0; element < count; ++element) {
+    bool is_zero = true;
+    for (int c = 0; c < size; ++c) {
+      is_zero = is_zero && static_cast<float>(values[size * element + c]) == 0;
+    }
+    if (!is_zero) keep(element);
+    if (2 * sparse.stored > static_cast<std::size_t>(count)) return std::nullopt;
+  }
+  if (sparse.stored == 0) keep(0);
+  return sparse;
 }
 
 /// What stands where in the file, told before it is written.
@@ -158,10 +192,6 @@ NormalBytes normal_bytes(const Positions& changes) {
   return result;
 }
 
-bool has_polygons(const Connectivity& faces) {
-  return static_cast<int>(faces.triangles.rows()) != faces.polygons.size();
-}
-
 void check_gltf_times(const fs::path& target, const Eigen::VectorXd& times) {
   for (Eigen::Index frame = 0; frame < times.size(); ++frame) {
     const auto time = static_cast<float>(times[frame]);
@@ -195,7 +225,8 @@ class GltfFile {
       : target_(target),
         is_binary_(lower_extension(target) == ".glb"),
         names_(plan.targets),
-        has_polygons_(has_polygons(*plan.header.connectivity)),
+        has_polygons_(plan.header.connectivity->triangles.rows() !=
+                      plan.header.connectivity->polygons.size()),
         name_(target.stem().string()),
         rest_is_known_(plan.header.rest_is_known),
         neutral_(plan.header.rest.cast<float>()),

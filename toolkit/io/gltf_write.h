@@ -4,11 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "toolkit/io/sequence_options.h"
+#include "toolkit/io/sequence_format.h"
 #include "toolkit/io/weight_track.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/model/animation.h"
-#include "toolkit/model/morphable_model.h"
+#include "toolkit/model/blendshape_model.h"
 
 /// Writing glTF 2.0: a .glb, or a .gltf with NAME.bin beside it, in single precision. Polygons are
 /// triangulated, in the order by which FB_ngon_encoding finds them again.

@@ -1,17 +1,422 @@
 #include "toolkit/io/hdf5_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <mutex>
+
+#include <zlib.h>
 
 #include "toolkit/io/bytes.h"
-#include "toolkit/io/hdf5_fields.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
+
 namespace {
+
+using Storage = Hdf5Dataset::Storage;
+
+/// Rows that stand one after the other in the file.
+class ContiguousRows : public Storage {
+ public:
+  ContiguousRows(std::shared_ptr<const Hdf5Bytes> file, std::uint64_t address,
+                 std::uint64_t row_bytes)
+      : file_(std::move(file)), address_(address), row_bytes_(row_bytes) {}
+
+  void read_rows(std::uint64_t first, std::uint64_t rows, char* to) const override {
+    file_->read(address_ + first * row_bytes_, to, rows * row_bytes_);
+  }
+
+ private:
+  std::shared_ptr<const Hdf5Bytes> file_;
+  std::uint64_t address_;
+  std::uint64_t row_bytes_;
+};
+
+/// Rows in the object's header.
+class CompactRows : public Storage {
+ public:
+  CompactRows(std::string_view bytes, std::uint64_t row_bytes)
+      : bytes_(bytes), row_bytes_(row_bytes) {}
+
+  void read_rows(std::uint64_t first, std::uint64_t rows, char* to) const override {
+    std::memcpy(to, bytes_.data() + first * row_bytes_, rows * row_bytes_);
+  }
+
+ private:
+  std::string bytes_;
+  std::uint64_t row_bytes_;
+};
+
+enum class Filter : std::uint64_t { deflate = 1, shuffle = 2, fletcher32 = 3 };
+
+std::vector<Filter> filters_of(const Hdf5Dataset& dataset, const Hdf5Bytes& file,
+                               const Hdf5Message* message) {
+  if (!message) return {};
+  Hdf5Fields fields(file, message->body);
+  const auto version = fields.byte();
+  const auto count = fields.byte();
+  if (version == 1) fields.skip(6);
+  std::vector<Filter> filters;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const auto id = fields.number(2);
+    constexpr std::uint64_t kFirstOfOthers = 256;
+    const auto name_bytes = version == 1 || id >= kFirstOfOthers ? fields.number(2) : 0;
+    fields.skip(2);
+    const auto values = fields.number(2);
+    std::string_view name = fields.take(name_bytes);
+    name = name.substr(0, name.find('\0'));
+    fields.skip(4 * values + (version == 1 && values % 2 == 1 ? 4 : 0));
+    if (id < 1 || id > 3) {
+      dataset.fail("is stored by the filter " + std::to_string(id) +
+                   (name.empty() ? "" : " '" + std::string(name) + "'") +
+                   ", which is not read; rewrite it by `h5repack -f GZIP=4 IN.h5 OUT.h5`");
+    }
+    filters.push_back(Filter(id));
+  }
+  return filters;
+}
+
+/// One of the blocks that a dataset is cut into.
+struct Chunk {
+  std::uint64_t address = kNowhere;
+  std::uint64_t stored_bytes = 0;
+  /// Bit i is set where filter i was left out.
+  std::uint64_t left_out = 0;
+};
+
+std::string inflated(const Hdf5Dataset& dataset, std::string_view stored, std::size_t most) {
+  std::string bytes(most, '\0');
+  auto size = static_cast<uLongf>(bytes.size());
+  const int status =
+      uncompress(reinterpret_cast<Bytef*>(bytes.data()), &size,
+                 reinterpret_cast<const Bytef*>(stored.data()), static_cast<uLong>(stored.size()));
+  if (status != Z_OK) dataset.fail("cannot be inflated; the file is damaged");
+  bytes.resize(size);
+  return bytes;
+}
+
+/// First all first bytes of the numbers, then all second ones, and so on, put in order.
+std::string unshuffled(std::string_view bytes, std::size_t number) {
+  std::string numbers(bytes);
+  const std::size_t count = bytes.size() / number;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t b = 0; b < number; ++b) numbers[i * number + b] = bytes[b * count + i];
+  }
+  return numbers;
+}
+
+/// Decoded blocks of the same rows: in memory while they are few, otherwise in a ScratchFile.
+class DecodedBlocks {
+ public:
+  DecodedBlocks(std::uint64_t count, std::uint64_t block_bytes) : block_bytes_(block_bytes) {
+    constexpr std::uint64_t kMemoryBytes = std::uint64_t{16} << 20;
+    if (count > kMemoryBytes / block_bytes) {
+      file_.emplace();
+    } else {
+      memory_.resize(count * block_bytes);
+    }
+  }
+
+  void put(std::uint64_t block, std::string_view bytes) {
+    bytes = bytes.substr(0, block_bytes_);
+    if (file_) {
+      file_->write(block * block_bytes_, std::as_bytes(std::span(bytes)));
+    } else {
+      std::ranges::copy(bytes, memory_.data() + block * block_bytes_);
+    }
+  }
+
+  /// `count` bytes of a block from `offset` on, which may be put into `held`. From several threads.
+  const char* bytes(std::uint64_t block, std::uint64_t offset, std::uint64_t count,
+                    std::string& held) const {
+    const std::uint64_t at = block * block_bytes_ + offset;
+    if (!file_) return memory_.data() + at;
+    held.resize(count);
+    file_->read(at, std::as_writable_bytes(std::span(held)));
+    return held.data();
+  }
+
+ private:
+  std::uint64_t block_bytes_;
+  std::string memory_;
+  std::optional<ScratchFile> file_;
+};
+
+/// A dataset in blocks, each of which is compressed for itself. Blocks of the same rows are kept
+/// once they are decoded, as neighbouring rows are read one after the other.
+class ChunkedRows : public Storage {
+ public:
+  /// `extents` of a block, one for each dimension. \pre no extent is 0
+  ChunkedRows(const Hdf5Dataset& dataset, std::shared_ptr<const Hdf5Bytes> file,
+              std::vector<std::uint64_t> extents, std::vector<Filter> filters)
+      : dataset_(dataset),
+        file_(std::move(file)),
+        shape_(dataset.shape()),
+        extents_(std::move(extents)),
+        filters_(std::move(filters)),
+        number_(dataset.type().bytes),
+        row_bytes_(dataset.row_size() * number_),
+        chunk_bytes_(number_) {
+    // What is decoded at once.
+    constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
+    for (std::size_t d = 0; d < shape_.size(); ++d) {
+      // A block may reach beyond the dataset, whose rows are what is kept.
+      if (chunk_bytes_ > kMostBytes / extents_[d]) {
+        dataset_.fail("is cut into blocks of more than 1 GiB; rewrite it by `h5repack` with less");
+      }
+      chunk_bytes_ *= extents_[d];
+      counts_.push_back((shape_[d] + extents_[d] - 1) / extents_[d]);
+    }
+  }
+
+  std::uint64_t count() const {
+    std::uint64_t count = 1;
+    for (const std::uint64_t of_dimension : counts_) count *= of_dimension;
+    return count;
+  }
+  std::uint64_t chunk_bytes() const { return chunk_bytes_; }
+
+  /// The number of the block that starts at `offsets`.
+  std::uint64_t index_of(const std::vector<std::uint64_t>& offsets) const {
+    std::uint64_t index = 0;
+    for (std::size_t d = 0; d < shape_.size(); ++d) {
+      if (offsets[d] % extents_[d] != 0 || offsets[d] / extents_[d] >= counts_[d]) {
+        file_->fail_damaged("a block lies outside of its dataset");
+      }
+      index = index * counts_[d] + offsets[d] / extents_[d];
+    }
+    return index;
+  }
+
+  /// All blocks in order. Together they must not take more than the file holds.
+  void set(std::vector<Chunk> chunks) {
+    std::uint64_t left = file_->size();
+    for (const Chunk& chunk : chunks) {
+      if (chunk.address == kNowhere) dataset_.fail("holds no numbers for a part of it");
+      if (chunk.stored_bytes > left || !file_->holds(chunk.address, chunk.stored_bytes)) {
+        dataset_.fail("claims more numbers than the file holds");
+      }
+      left -= chunk.stored_bytes;
+      const std::uint64_t most =
+          is_deflated(chunk) ? kMostInflated * (chunk.stored_bytes + 1) : chunk.stored_bytes;
+      if (chunk_bytes_ > most) dataset_.fail("claims more numbers than the file holds");
+    }
+    chunks_ = std::move(chunks);
+  }
+
+  void read_rows(std::uint64_t first, std::uint64_t rows, char* to) const override {
+    for (std::uint64_t row = first; row < first + rows;) {
+      const std::uint64_t slab = row / extents_[0], begin = slab * extents_[0];
+      const std::uint64_t end = std::min({begin + extents_[0], shape_[0], first + rows});
+      const auto blocks = blocks_of(slab);
+      const std::uint64_t of_slab = chunks_.size() / counts_[0];
+      const std::uint64_t in_block = chunk_bytes_ / extents_[0];
+      std::string held;
+      for (std::uint64_t i = 0; i < of_slab; ++i) {
+        const char* const bytes =
+            blocks->bytes(i, (row - begin) * in_block, (end - row) * in_block, held);
+        copy_block(bytes, i, end - row, to);
+      }
+      to += (end - row) * row_bytes_;
+      row = end;
+    }
+  }
+
+ private:
+  bool is_deflated(const Chunk& chunk) const {
+    for (std::size_t i = 0; i < filters_.size(); ++i) {
+      if (filters_[i] == Filter::deflate && (chunk.left_out >> i & 1) == 0) return true;
+    }
+    return false;
+  }
+
+  /// The blocks of one row of them.
+  std::shared_ptr<const DecodedBlocks> blocks_of(std::uint64_t slab) const {
+    const std::lock_guard lock(mutex_);
+    if (kept_ && kept_slab_ == slab) return kept_;
+    kept_.reset();
+    const std::uint64_t of_slab = chunks_.size() / counts_[0];
+    auto blocks = std::make_shared<DecodedBlocks>(of_slab, chunk_bytes_);
+    for (std::uint64_t i = 0; i < of_slab; ++i) {
+      blocks->put(i, decoded(chunks_[slab * of_slab + i]));
+    }
+    kept_slab_ = slab;
+    kept_ = std::move(blocks);
+    return kept_;
+  }
+
+  std::string decoded(const Chunk& chunk) const {
+    constexpr std::size_t kChecksum = 4;
+    std::string bytes = file_->at(chunk.address, chunk.stored_bytes);
+    for (std::size_t i = filters_.size(); i > 0; --i) {
+      if (chunk.left_out >> (i - 1) & 1) continue;
+      if (filters_[i - 1] == Filter::fletcher32) {
+        bytes.resize(bytes.size() - std::min(bytes.size(), kChecksum));
+      } else if (filters_[i - 1] == Filter::shuffle) {
+        bytes = unshuffled(bytes, number_);
+      } else {
+        bytes = inflated(dataset_, bytes, chunk_bytes_ + kChecksum * filters_.size());
+      }
+    }
+    if (bytes.size() < chunk_bytes_) dataset_.fail("is truncated: a block of it is too short");
+    return bytes;
+  }
+
+  /// Copies the part of some rows of block number `index` that is in the dataset.
+  void copy_block(const char* from, std::uint64_t index, std::uint64_t rows, char* to) const {
+    // Three dimensions at most: rows, columns, and numbers that stand together.
+    std::array<std::uint64_t, 3> size = {1, 1, 1}, extent = {1, 1, 1}, begin = {0, 0, 0};
+    for (std::size_t d = shape_.size(); d > 0; --d) {
+      size[d - 1] = shape_[d - 1];
+      extent[d - 1] = extents_[d - 1];
+      if (d == 1) break;
+      begin[d - 1] = index % counts_[d - 1] * extents_[d - 1];
+      index /= counts_[d - 1];
+    }
+    const std::uint64_t columns = std::min(extent[1], size[1] - begin[1]);
+    const std::size_t run = std::min(extent[2], size[2] - begin[2]) * number_;
+    for (std::uint64_t row = 0; row < rows; ++row) {
+      for (std::uint64_t column = 0; column < columns; ++column) {
+        const std::uint64_t source = (row * extent[1] + column) * extent[2];
+        const std::uint64_t place = (row * size[1] + begin[1] + column) * size[2] + begin[2];
+        std::memcpy(to + place * number_, from + source * number_, run);
+      }
+    }
+  }
+
+  const Hdf5Dataset dataset_;
+  std::shared_ptr<const Hdf5Bytes> file_;
+  std::vector<std::uint64_t> shape_, extents_, counts_;
+  std::vector<Filter> filters_;
+  std::size_t number_;
+  std::uint64_t row_bytes_;
+  std::uint64_t chunk_bytes_;
+  std::vector<Chunk> chunks_;
+
+  mutable std::mutex mutex_;
+  mutable std::uint64_t kept_slab_ = 0;
+  mutable std::shared_ptr<const DecodedBlocks> kept_;
+};
+
+/// The blocks that a B-tree of version 1 lists.
+std::vector<Chunk> chunks_of_tree(const Hdf5Bytes& file, const ChunkedRows& rows, std::size_t rank,
+                                  std::uint64_t tree) {
+  // Size, filters left out, offset in each dimension, and of the byte in a number.
+  const std::size_t key_bytes = 8 + 8 * (rank + 1);
+  const auto leaves =
+      tree == kNowhere ? std::vector<Hdf5Leaf>{} : hdf5_leaves(file, tree, 1, key_bytes);
+  if (leaves.size() != rows.count()) return {};
+  std::vector<Chunk> chunks(leaves.size());
+  for (const Hdf5Leaf& leaf : leaves) {
+    Hdf5Fields key(file, leaf.key);
+    const auto bytes = key.number(4), left_out = key.number(4);
+    std::vector<std::uint64_t> offsets;
+    for (std::size_t d = 0; d < rank; ++d) offsets.push_back(key.number(8));
+    chunks[rows.index_of(offsets)] = {leaf.address, bytes, left_out};
+  }
+  return chunks;
+}
+
+/// How the latest format lists blocks.
+enum class ChunkIndex : std::uint64_t { single = 1, implicit = 2 };
+
+std::vector<Chunk> chunks_of_index(const Hdf5Dataset& dataset, const ChunkedRows& rows,
+                                   Hdf5Fields& fields, bool has_filtered_size) {
+  const auto index = ChunkIndex(fields.byte());
+  if (index == ChunkIndex::single && rows.count() == 1) {
+    Chunk chunk{0, rows.chunk_bytes(), 0};
+    if (has_filtered_size) {
+      chunk.stored_bytes = fields.address();
+      chunk.left_out = fields.number(4);
+    }
+    chunk.address = fields.address();
+    return {chunk};
+  }
+  if (index != ChunkIndex::implicit) {
+    dataset.fail(
+        "is listed in HDF5's latest format, which is not read; rewrite it by "
+        "`h5repack IN.h5 OUT.h5`");
+  }
+  const auto address = fields.address();
+  std::vector<Chunk> chunks;
+  if (address == kNowhere) return chunks;
+  for (std::uint64_t i = 0; i < rows.count(); ++i) {
+    chunks.push_back({address + i * rows.chunk_bytes(), rows.chunk_bytes(), 0});
+  }
+  return chunks;
+}
+
+std::shared_ptr<const Storage> chunked(const Hdf5Dataset& dataset,
+                                       const std::shared_ptr<const Hdf5Bytes>& file,
+                                       Hdf5Fields& fields, std::uint64_t version,
+                                       const Hdf5Message* filters) {
+  constexpr std::uint64_t kFilteredSize = 2;
+  const auto flags = version == 4 ? fields.byte() : 0;
+  const auto dimensions = fields.byte();
+  const std::size_t rank = dataset.shape().size();
+  if (dimensions != rank + 1) file->fail_damaged("a dataset's blocks have another shape");
+  const auto tree = version == 4 ? kNowhere : fields.address();
+  const std::size_t width = version == 4 ? fields.byte() : 4;
+  if (width < 1 || width > 8) file->fail_damaged("a dataset's blocks have no size");
+  std::vector<std::uint64_t> extents;
+  for (std::size_t d = 0; d <= rank; ++d) {
+    extents.push_back(fields.number(width));
+    if (extents.back() == 0) file->fail_damaged("a dataset's blocks have no size");
+  }
+  extents.pop_back();
+  auto rows = std::make_shared<ChunkedRows>(dataset, file, std::move(extents),
+                                            filters_of(dataset, *file, filters));
+  // No file holds a block in no bytes.
+  if (rows->count() > file->size()) dataset.fail("claims more numbers than the file holds");
+  auto chunks = version == 4 ? chunks_of_index(dataset, *rows, fields, (flags & kFilteredSize) != 0)
+                             : chunks_of_tree(*file, *rows, rank, tree);
+  if (chunks.size() != rows->count()) dataset.fail("holds no numbers for a part of it");
+  rows->set(std::move(chunks));
+  return rows;
+}
+
+/// The rows of the dataset's shape as the layout and filter messages say. Throws IoError.
+std::shared_ptr<const Storage> hdf5_storage(const Hdf5Dataset& dataset,
+                                            std::shared_ptr<const Hdf5Bytes> file,
+                                            const Hdf5Message& layout, const Hdf5Message* filters) {
+  enum : std::uint64_t { kCompact, kContiguous, kChunked, kVirtual };
+  constexpr std::size_t kMostDimensions = 3;
+  const std::uint64_t row_bytes = dataset.row_size() * dataset.type().bytes;
+  const std::uint64_t bytes = dataset.size() * dataset.type().bytes;
+  if (bytes == 0) return std::make_shared<CompactRows>("", 0);
+  Hdf5Fields fields(*file, layout.body);
+  const auto version = fields.byte();
+  if (version != 3 && version != 4) {
+    dataset.fail("has version " + std::to_string(version) + " of HDF5's layout, expected 3 or 4");
+  }
+  const auto kind = fields.byte();
+  if (kind == kCompact) {
+    const std::string_view held = fields.take(fields.number(2));
+    if (held.size() < bytes) dataset.fail("claims more numbers than the file holds");
+    return std::make_shared<CompactRows>(held, row_bytes);
+  }
+  if (kind == kContiguous) {
+    const auto address = fields.address();
+    if (address == kNowhere) dataset.fail("holds no numbers");
+    if (fields.address() < bytes || !file->holds(address, bytes)) {
+      dataset.fail("claims more numbers than the file holds");
+    }
+    return std::make_shared<ContiguousRows>(std::move(file), address, row_bytes);
+  }
+  if (kind == kVirtual) dataset.fail("is made of other datasets, which are not followed");
+  const std::size_t rank = dataset.shape().size();
+  if (kind != kChunked || rank == 0) file->fail_damaged("a dataset has an unknown layout");
+  if (rank > kMostDimensions) {
+    dataset.fail("has " + std::to_string(rank) + " dimensions, expected 3 at most");
+  }
+  return chunked(dataset, file, fields, version, filters);
+}
 
 /// Null where there is none.
 const Hdf5Message* find(const std::vector<Hdf5Message>& messages, Hdf5Message::Type type) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -8,10 +7,9 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "toolkit/io/hdf5_bytes.h"
+#include "toolkit/io/hdf5_fields.h"
 
 /// HDF5 files, read without HDF5's library: that one crashes on damaged files, follows what a file
 /// says into other files, and loads plugins. Here nothing but the file itself is read, and every
@@ -91,11 +89,5 @@ class Hdf5File {
   /// None for what is not one number.
   std::map<std::string, std::optional<double>> attributes_;
 };
-
-/// The rows of `shape` as the layout and filter messages say. Throws IoError.
-std::shared_ptr<const Hdf5Dataset::Storage> hdf5_storage(const Hdf5Dataset& dataset,
-                                                         std::shared_ptr<const Hdf5Bytes> file,
-                                                         const Hdf5Message& layout,
-                                                         const Hdf5Message* filters);
 
 }  // namespace mimetra

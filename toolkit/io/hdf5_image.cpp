@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "toolkit/io/bytes.h"
+#include "toolkit/io/hdf5_fields.h"
 
 namespace mimetra {
 namespace {
 
-constexpr std::uint64_t kNoAddress = ~std::uint64_t{0};
 /// Of children of an index, in halves: as HDF5 itself has it.
 constexpr std::uint16_t kInternalK = 16;
 constexpr std::size_t kSuperblockBytes = 96;
@@ -124,7 +124,7 @@ std::string fill_message() {
 
 std::string layout_message(std::uint64_t place, std::uint64_t bytes) {
   constexpr unsigned kContiguous = 1;
-  return Bytes().u8(3).u8(kContiguous).u64(bytes > 0 ? place : kNoAddress).u64(bytes);
+  return Bytes().u8(3).u8(kContiguous).u64(bytes > 0 ? place : kNowhere).u64(bytes);
 }
 
 std::string attribute_message(const std::string& name, const Hdf5Array& value) {
@@ -262,9 +262,9 @@ void Hdf5Image::write_all() {
                                      .u16(kInternalK)
                                      .u32(0)
                                      .u64(0)
-                                     .u64(kNoAddress)
+                                     .u64(kNowhere)
                                      .u64(end)
-                                     .u64(kNoAddress)
+                                     .u64(kNowhere)
                                      .u64(0)
                                      .u64(root)
                                      .u32(0)
@@ -274,28 +274,21 @@ void Hdf5Image::write_all() {
 }
 
 std::uint64_t Hdf5Image::write_object(const std::string& path) {
-  enum : std::size_t {
-    kSpace = 1,
-    kType = 3,
-    kFill = 5,
-    kLayout = 8,
-    kAttribute = 12,
-    kLinks = 17
-  };
   Node& node = nodes_.at(path);
   std::vector<std::string> messages;
   if (node.is_group) {
-    messages.push_back(message(kLinks, links_of_group(path)));
+    messages.push_back(message(Hdf5Message::symbol_table, links_of_group(path)));
   } else {
     if (!node.is_reserved) node.place = append(node.array.bytes);
-    messages.push_back(message(kSpace, space_message(node.array)));
-    messages.push_back(message(kType, type_message(node.array)));
-    messages.push_back(message(kFill, fill_message()));
+    messages.push_back(message(Hdf5Message::dataspace, space_message(node.array)));
+    messages.push_back(message(Hdf5Message::datatype, type_message(node.array)));
+    messages.push_back(message(Hdf5Message::fill_value, fill_message()));
     messages.push_back(
-        message(kLayout, layout_message(node.place, size_of(node.array) * bytes_of(node.array))));
+        message(Hdf5Message::layout,
+                layout_message(node.place, size_of(node.array) * bytes_of(node.array))));
   }
   for (const auto& [name, value] : node.attributes) {
-    messages.push_back(message(kAttribute, attribute_message(name, value)));
+    messages.push_back(message(Hdf5Message::attribute, attribute_message(name, value)));
   }
   const std::string all = std::accumulate(messages.begin(), messages.end(), std::string());
   return append(Bytes().u8(1).u8(0).u16(messages.size()).u32(1).u32(all.size()).u32(0).text(all));
@@ -332,8 +325,8 @@ std::string Hdf5Image::links_of_group(const std::string& path) {
                                .u8(0)
                                .u8(0)
                                .u16(count > 0 ? 1 : 0)
-                               .u64(kNoAddress)
-                               .u64(kNoAddress)
+                               .u64(kNowhere)
+                               .u64(kNowhere)
                                .u64(0)
                                .u64(leaf)
                                .u64(last)

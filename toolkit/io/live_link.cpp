@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
-#include "toolkit/io/timecode.h"
+#include "toolkit/io/text_cursor.h"
+#include "toolkit/io/time_columns.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/frame_source.h"
 #include "toolkit/mesh/median.h"
@@ -21,7 +21,6 @@ constexpr std::array kRotations = {"HeadYaw",     "HeadPitch",     "HeadRoll",
                                    "RightEyeYaw", "RightEyePitch", "RightEyeRoll"};
 
 constexpr long long kThousandths = 1000;
-constexpr long long kSecondsOfDay = 24 * 60 * 60;
 /// Timecodes count fewer frames in a second than that.
 constexpr double kFastest = 999;
 
@@ -35,7 +34,6 @@ std::vector<int> columns_of(const std::vector<std::string>& expressions) {
 /// Frames per second that timecodes count by: the usual number nearest to the median step, where
 /// one is near.
 int counted_rate(const Eigen::VectorXd& times) {
-  constexpr std::array kUsualRates = {24, 25, 30, 48, 50, 60, 90, 100, 120, 240};
   if (times.size() < 2) return 30;
   const double found = 1 / median_difference(times);
   for (const int rate : kUsualRates) {
@@ -105,12 +103,6 @@ std::vector<std::string> timecodes_of(const Eigen::VectorXd& times, bool are_kno
   }
   if (const auto lost = lost_times(codes, times, rate); lost && are_known) notes.push_back(*lost);
   return texts;
-}
-
-void append_shortest(std::string& text, double number) {
-  std::array<char, 32> buffer = {};
-  text.append(buffer.data(),
-              std::to_chars(buffer.data(), buffer.data() + buffer.size(), number).ptr);
 }
 
 /// The weights in Live Link's columns (F x 52), and what becomes of the others.
@@ -223,7 +215,7 @@ LiveLinkText live_link_csv(const WeightTrack& track) {
     made.text += codes[static_cast<std::size_t>(f)] + ',' + count;
     for (const double weight : weights.row(f)) {
       made.text += ',';
-      append_shortest(made.text, weight);
+      append_number(made.text, weight);
     }
     for (std::size_t r = 0; r < kRotations.size(); ++r) made.text += ",0";
     made.text += '\n';

@@ -1,8 +1,6 @@
 #include "toolkit/io/marker_file.h"
 
-#include <algorithm>
 #include <limits>
-#include <string>
 
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/io/whole_file.h"

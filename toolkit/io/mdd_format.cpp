@@ -4,7 +4,6 @@
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/point_cache.h"
 #include "toolkit/io/sequence_format.h"
-#include "toolkit/io/sequence_parts.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
-#include "toolkit/io/om_file.h"
+#include "toolkit/io/text_cursor.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
@@ -34,8 +35,7 @@ constexpr std::array kCodecs = {
               nullptr,
               om_frame,
               {.polygons = true, .texture = Texture::corners, .bare_faces = false},
-              read_om_fields,
-              om_properties}};
+              read_om_fields}};
 
 }  // namespace
 
@@ -48,14 +48,31 @@ const MeshCodec* mesh_codec(const std::string& extension) {
   return found == kCodecs.end() ? nullptr : &*found;
 }
 
-bool is_textured_by_vertex(const Connectivity& connectivity) {
-  const TextureCoordinates& texture = connectivity.texture;
-  return static_cast<int>(texture.coordinates.size()) == connectivity.vertices &&
-         texture.corners == connectivity.polygons.corners;
-}
-
 HeldParts parts_held_by(MeshFormat format) {
   return std::ranges::find(kCodecs, format, &MeshCodec::format)->holds;
+}
+
+bool fits_single_precision(const TextureCoordinates& texture) {
+  return std::ranges::all_of(texture.coordinates, [](const Eigen::Vector2d& uv) {
+    const double farthest = uv.cwiseAbs().maxCoeff();
+    return farthest <= kLargestSingle || !std::isfinite(farthest);
+  });
+}
+
+std::string position_lines(std::string_view before, const PositionsView& positions,
+                           bool double_precision) {
+  const std::size_t longest = before.size() + 3 * (kMostDigits + 1);
+  std::string text(longest * static_cast<std::size_t>(positions.rows()), ' ');
+  char* at = text.data();
+  for (Eigen::Index vertex = 0; vertex < positions.rows(); ++vertex) {
+    at = std::copy(before.begin(), before.end(), at);
+    for (int axis = 0; axis < 3; ++axis) {
+      at = put_number(at, positions(vertex, axis), double_precision);
+      *at++ = axis < 2 ? ' ' : '\n';
+    }
+  }
+  text.resize(static_cast<std::size_t>(at - text.data()));
+  return text;
 }
 
 }  // namespace mimetra

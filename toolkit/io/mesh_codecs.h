@@ -3,15 +3,13 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "toolkit/io/bytes.h"
-#include "toolkit/io/fields_read.h"
-#include "toolkit/io/held_parts.h"
 #include "toolkit/io/mesh_formats.h"
-#include "toolkit/io/mesh_layout.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/mesh/tri_mesh.h"
 
@@ -38,6 +36,11 @@ MeshContent read_obj(const std::string& path, std::string_view bytes, const Cont
 MeshContent read_ply(const std::string& path, std::string_view bytes, const Context&);
 MeshContent read_off(const std::string& path, std::string_view bytes, const Context&);
 MeshContent read_om(const std::string& path, std::string_view bytes, const Context&);
+/// The properties of vertices and faces in one of OpenMesh's own files (.om) that are numbers:
+/// integers, bool, float, double, and vectors of two to four; others are left out. `connectivity`
+/// is that of the file. Throws IoError, Cancelled.
+FieldsRead read_om_fields(const std::filesystem::path& path, const Connectivity& connectivity,
+                          const Context& context = {});
 /// The corners of all triangles, one after the other, not welded (x y z each).
 std::vector<double> read_stl_corners(const std::string& path, std::string_view bytes,
                                      const Context&);
@@ -60,17 +63,39 @@ struct MeshFrame {
 
 /// Coordinates are floats unless `double_precision` or a texture needs more, in STL always. No
 /// reference to the connectivity is kept. Throw Cancelled.
-MeshFrame obj_frame(const Connectivity& connectivity, bool double_precision, const Context&);
-MeshFrame ply_frame(const Connectivity& connectivity, bool double_precision, const Context&);
-MeshFrame off_frame(const Connectivity& connectivity, bool double_precision, const Context&);
-MeshFrame stl_frame(const Connectivity& connectivity, bool double_precision, const Context&);
-/// Throws MismatchError that names a vertex or faces which half-edges cannot hold.
-MeshFrame om_frame(const Connectivity& connectivity, bool double_precision, const Context&);
+MeshFrame obj_frame(const Connectivity& connectivity, const std::vector<Field>& fields,
+                    bool double_precision, const Context&);
+MeshFrame ply_frame(const Connectivity& connectivity, const std::vector<Field>& fields,
+                    bool double_precision, const Context&);
+MeshFrame off_frame(const Connectivity& connectivity, const std::vector<Field>& fields,
+                    bool double_precision, const Context&);
+MeshFrame stl_frame(const Connectivity& connectivity, const std::vector<Field>& fields,
+                    bool double_precision, const Context&);
+/// With the fields as properties, which the other formats have no place for. Throws MismatchError
+/// that names a vertex or a face which half-edges cannot hold, or a field which the file cannot.
+MeshFrame om_frame(const Connectivity& connectivity, const std::vector<Field>& fields,
+                   bool double_precision, const Context&);
 
-/// What ends OpenMesh's files: fields as properties, and a last chunk. Throws MismatchError that
-/// names a field which they cannot hold.
-std::string om_properties(const std::vector<Field>& fields, const Connectivity& connectivity,
-                          const Context&);
+/// What the files of one mesh have in common, learnt from the first of them.
+class MeshLayout {
+ public:
+  virtual ~MeshLayout() = default;
+
+  /// Reads x y z of each vertex of a further file into `coordinates`. Bytes around the positions
+  /// are compared with the first file's. False, with anything in `coordinates`, where they differ
+  /// in what faces depend on, where a position is malformed or not finite, or where the file is
+  /// written in a way that only the format's whole reader knows.
+  virtual bool read(std::string_view bytes, std::span<double> coordinates) const = 0;
+};
+
+/// Learn the layout from the bytes of a first file, in which the format's reader found so many
+/// vertices. Null if the file is written in a way that only that reader knows. Throw Cancelled.
+std::unique_ptr<const MeshLayout> obj_layout(std::string first, std::size_t vertices,
+                                             const Context&);
+std::unique_ptr<const MeshLayout> ply_layout(std::string first, std::size_t vertices,
+                                             const Context&);
+std::unique_ptr<const MeshLayout> off_layout(std::string first, std::size_t vertices,
+                                             const Context&);
 
 /// A format, declared once.
 struct MeshCodec {
@@ -81,14 +106,13 @@ struct MeshCodec {
   /// nothing in common.
   std::unique_ptr<const MeshLayout> (*layout)(std::string first, std::size_t vertices,
                                               const Context&);
-  MeshFrame (*frame)(const Connectivity& connectivity, bool double_precision, const Context&);
+  MeshFrame (*frame)(const Connectivity& connectivity, const std::vector<Field>& fields,
+                     bool double_precision, const Context&);
   /// In its files; a rest pose stands beside them.
   HeldParts holds;
-  /// Fields in a file, and the bytes that end it with them; null for a format without.
+  /// Fields in a file; null for a format without.
   FieldsRead (*fields)(const std::filesystem::path& path, const Connectivity&,
                        const Context&) = nullptr;
-  std::string (*properties)(const std::vector<Field>& fields, const Connectivity&,
-                            const Context&) = nullptr;
 
   /// ".ply".
   std::string extension() const;
@@ -97,22 +121,11 @@ struct MeshCodec {
 /// The format of an extension (".ply") in any case; null for one that is no mesh format.
 const MeshCodec* mesh_codec(const std::string& extension);
 
-/// Characters that the shortest digits of a number take at most: a double has 24, an integer 20.
-inline constexpr std::size_t kMostDigits = 32;
-
-/// Puts the shortest digits that read back equal, as float or as double, to where `text` has room
-/// for kMostDigits; returns where they end.
-char* put_number(char* text, double value, bool double_precision);
-void append_number(std::string& text, double value, bool double_precision);
-void append_integer(std::string& text, long long value);
 /// False where single precision would make a texture coordinate infinite.
 bool fits_single_precision(const TextureCoordinates& texture);
 /// A line "x y z" for each vertex, with `before` in front of it.
 std::string position_lines(std::string_view before, const PositionsView& positions,
                            bool double_precision);
-
-/// Texture coordinates stand on vertices where each has one of its own number, else on corners.
-bool is_textured_by_vertex(const Connectivity& connectivity);
 
 /// x y z of each vertex, least significant byte first.
 template <typename Scalar>

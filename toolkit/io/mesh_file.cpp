@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
+#include "toolkit/io/binary_file.h"
 #include "toolkit/io/material_library.h"
 #include "toolkit/io/mesh_codecs.h"
-#include "toolkit/io/mesh_layout.h"
 #include "toolkit/io/whole_file.h"
-#include "toolkit/mesh/coordinate.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/face_order.h"
 #include "toolkit/mesh/text.h"
@@ -18,6 +17,7 @@
 
 namespace mimetra {
 namespace fs = std::filesystem;
+
 namespace {
 
 std::string read_bytes(const fs::path& path) {
@@ -213,7 +213,7 @@ bool names_no_vertices(const fs::path& path) {
   return !mesh_codec(lower_extension(path))->read;
 }
 
-TriMesh read_mesh(const fs::path& path, std::string_view bytes, const Context& context) {
+TriMesh mesh_of(const fs::path& path, std::string_view bytes, const Context& context) {
   if (names_no_vertices(path)) return read_stl(path, bytes, context);
   MeshContent content = read_checked(path, bytes, context);
   TriMesh mesh{positions_of(content.coordinates), {}};
@@ -225,8 +225,8 @@ TriMesh read_mesh(const fs::path& path, std::string_view bytes, const Context& c
   return mesh;
 }
 
-Positions read_positions(const fs::path& path, std::string_view bytes, const Connectivity& expected,
-                         const fs::path& expected_path, const Context& context) {
+Positions positions_in(const fs::path& path, std::string_view bytes, const Connectivity& expected,
+                       const fs::path& expected_path, const Context& context) {
   if (names_no_vertices(path))
     return gathered_corners(path, bytes, expected, expected_path, context);
   const MeshContent content = read_checked(path, bytes, context);
@@ -241,18 +241,18 @@ Positions read_positions(const fs::path& path, std::string_view bytes, const Con
 }  // namespace
 
 TriMesh read_mesh(const fs::path& path, const Context& context) {
-  return read_mesh(path, read_bytes(path), context);
+  return mesh_of(path, read_bytes(path), context);
 }
 
 Positions read_positions(const fs::path& path, const Connectivity& expected,
                          const fs::path& expected_path, const Context& context) {
-  return read_positions(path, read_bytes(path), expected, expected_path, context);
+  return positions_in(path, read_bytes(path), expected, expected_path, context);
 }
 
 MeshFileReader::MeshFileReader(fs::path first, const Context& context) : first_(std::move(first)) {
   constexpr double kMeshShare = 0.9;
   std::string bytes = read_bytes(first_);
-  mesh_ = read_mesh(first_, bytes, context.part(0, kMeshShare));
+  mesh_ = mesh_of(first_, bytes, context.part(0, kMeshShare));
   if (const auto layout = mesh_codec(lower_extension(first_))->layout) {
     layout_ = layout(std::move(bytes), static_cast<std::size_t>(mesh_.positions.rows()),
                      context.part(kMeshShare, 1));
@@ -269,7 +269,7 @@ void MeshFileReader::read(const fs::path& path, std::span<double> coordinates) c
   const std::string bytes = read_bytes(path);
   const bool same_format = lower_extension(path) == lower_extension(first_);
   if (layout_ && same_format && layout_->read(bytes, coordinates)) return;
-  const Positions positions = read_positions(path, bytes, mesh_.connectivity, first_, {});
+  const Positions positions = positions_in(path, bytes, mesh_.connectivity, first_, {});
   std::copy_n(positions.data(), positions.size(), coordinates.begin());
 }
 
@@ -277,6 +277,61 @@ Positions MeshFileReader::read(const fs::path& path) const {
   Positions positions(mesh_.positions.rows(), 3);
   read(path, {positions.data(), static_cast<std::size_t>(positions.size())});
   return positions;
+}
+
+MeshFileWriter::MeshFileWriter(const Connectivity& connectivity, const std::string& extension,
+                               bool double_precision, const std::vector<Field>& fields,
+                               const std::string& name, const Context& context)
+    : vertices_(connectivity.vertices),
+      single_precision_(!double_precision || lower_case(extension) == ".stl") {
+  const MeshCodec* codec = mesh_codec(extension);
+  if (!codec) throw std::invalid_argument(unknown_mesh_extension(lower_case(extension)));
+  try {
+    frame_ = std::make_unique<const MeshFrame>(
+        codec->frame(connectivity, fields, double_precision, context));
+  } catch (const MismatchError& error) {
+    throw MismatchError(name + ": " + error.what());
+  }
+}
+
+MeshFileWriter::~MeshFileWriter() = default;
+
+void MeshFileWriter::write(const fs::path& path, const PositionsView& positions) const {
+  if (positions.rows() != vertices_) {
+    throw std::invalid_argument(std::to_string(positions.rows()) + " positions, expected " +
+                                std::to_string(vertices_) + " as the faces have");
+  }
+  Eigen::Index vertex = 0, axis = 0;
+  const double farthest = vertices_ == 0 ? 0 : positions.cwiseAbs().maxCoeff(&vertex, &axis);
+  // What is infinite already stays so.
+  if (single_precision_ && farthest > kLargestSingle && std::isfinite(farthest)) {
+    throw MismatchError(committed_name(path).string() + ": " + beyond_single(vertex, farthest));
+  }
+  const std::string between = frame_->positions(positions);
+  OutputFile file(path);
+  file.write({frame_->before, between, frame_->after});
+  file.close();
+}
+
+void write_mesh(const fs::path& path, const PositionsView& positions,
+                const Connectivity& connectivity, const MeshWriteOptions& options,
+                const Context& context) {
+  check_options(options);
+  context.report(0);
+  const std::string extension =
+      lower_case(options.extension.empty() ? path.extension().string() : options.extension);
+  if (!is_mesh_extension(extension)) {
+    throw OutputError(path.string(), unknown_mesh_extension(extension));
+  }
+  MeshFileWriter(connectivity, extension, options.double_precision, options.fields,
+                 committed_name(path).string(), context)
+      .write(path, positions);
+}
+
+void write_mesh(const fs::path& path, const TriMesh& mesh, const MeshWriteOptions& options,
+                const Context& context) {
+  write_mesh(path, PositionsView(mesh.positions.data(), mesh.positions.rows(), 3),
+             mesh.connectivity, options, context);
 }
 
 }  // namespace mimetra

@@ -1,12 +1,10 @@
 #pragma once
 
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <span>
 #include <string>
 
-#include "toolkit/io/held_parts.h"
 #include "toolkit/io/mesh_formats.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/mesh/fields.h"

@@ -1,11 +1,17 @@
-#include "toolkit/io/frame_sequence.h"
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <span>
+
+#include "toolkit/io/frame_files.h"
 #include "toolkit/io/material_library.h"
 #include "toolkit/io/mesh_codecs.h"
 #include "toolkit/io/mesh_file.h"
+#include "toolkit/io/mesh_formats.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/sequence_parts.h"
-#include "toolkit/io/single_precision.h"
 #include "toolkit/io/whole_file.h"
+#include "toolkit/io/written_files.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 
@@ -13,6 +19,205 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
+/// A mesh file for each frame.
+class FrameFiles : public FrameSource {
+ public:
+  FrameFiles(std::unique_ptr<const MeshFileReader> reader, std::vector<fs::path> files,
+             SequenceHeader header)
+      : FrameSource(std::move(header)), reader_(std::move(reader)), files_(std::move(files)) {
+    if (!rest_is_known()) {
+      header_.rest =
+          files_[0] == reader_->first() ? reader_->mesh().positions : reader_->read(files_[0]);
+    }
+  }
+
+ private:
+  void read_frames(int first, FramesView poses) const override {
+    for (Eigen::Index row = 0; row < poses.rows(); ++row) {
+      const fs::path& file = files_[static_cast<std::size_t>(first + row)];
+      const std::span<double> pose(poses.row(row).data(), static_cast<std::size_t>(poses.cols()));
+      if (file == reader_->first()) {
+        std::copy_n(reader_->mesh().positions.data(), pose.size(), pose.begin());
+      } else {
+        reader_->read(file, pose);
+      }
+    }
+  }
+
+  std::unique_ptr<const MeshFileReader> reader_;
+  std::vector<fs::path> files_;
+};
+
+/// What stands beside the folder of a sequence's files.
+struct KnownBeside {
+  std::optional<Eigen::VectorXd> times = {};  ///< of the files
+  std::optional<Positions> rest = {};
+};
+
+KnownBeside known_beside(const fs::path& folder, int frames, const MeshFileReader& reader,
+                         std::vector<fs::path>& read) {
+  KnownBeside known;
+  known.times = times_beside(name_with(folder, kTimesSuffix), frames, read);
+  known.rest = rest_beside(name_with(folder, kRestSuffix), reader, read);
+  return known;
+}
+
+bool has_companion(const fs::path& folder) {
+  return fs::exists(beside(name_with(folder, kTimesSuffix), kTimesSuffix)) ||
+         fs::exists(beside(name_with(folder, kRestSuffix), kRestSuffix));
+}
+
+/// What stands beside the folder that a pattern takes several frames of; nothing, with a note, for
+/// other files of the folder. One mesh is no part of a sequence.
+KnownBeside known_of_folder(const std::vector<fs::path>& files, const MeshFileReader& reader,
+                            OpenSequence& open) {
+  const fs::path home = fs::absolute(files.front()).lexically_normal().parent_path();
+  const auto is_elsewhere = [&home](const fs::path& file) {
+    return fs::absolute(file).lexically_normal().parent_path() != home;
+  };
+  if (files.size() < 2 || !has_companion(home) || std::ranges::any_of(files, is_elsewhere)) {
+    return {};
+  }
+  const std::vector<fs::path> all = frames_of_format(home, files.front().extension().string());
+  std::map<std::string, Eigen::Index> place_of;
+  for (const fs::path& file : all) {
+    place_of.emplace(file.filename().string(), static_cast<Eigen::Index>(place_of.size()));
+  }
+  std::vector<Eigen::Index> places;
+  for (const fs::path& file : files) {
+    if (const auto found = place_of.find(file.filename().string()); found != place_of.end()) {
+      places.push_back(found->second);
+      continue;
+    }
+    open.notes.push_back(home.string() + ": times and rest pose beside it are not used: " +
+                         file.filename().string() + " is none of its " +
+                         std::to_string(all.size()) + " frames");
+    return {};
+  }
+  KnownBeside known = known_beside(home, static_cast<int>(all.size()), reader, open.files);
+  if (known.times) known.times = Eigen::VectorXd((*known.times)(places));
+  return known;
+}
+
+class FolderSink : public FrameSink {
+ public:
+  FolderSink(const SequenceHeader& header, const fs::path& target,
+             const SequenceWriteOptions& options, const ExtraFiles& extra,
+             const WrittenMaterials& materials, const Context& context)
+      : header_(header),
+        extent_(extent(header.rest)),
+        target_(target),
+        extension_('.' + std::string(choice_name(options.format))),
+        outputs_(options.overwrite, options.inputs, options.together),
+        folder_(outputs_.add(target, PendingOutput::Kind::folder)),
+        writer_(*header.connectivity, extension_, options.double_precision, {}, target.string(),
+                context.part(0, 0.5)),
+        exact_writer_(*header.connectivity, extension_, true, {}, target.string(),
+                      context.part(0.5, 1)) {
+    const auto frames = static_cast<int>(header.times.size());
+    for (int frame = 0; frame < frames; ++frame) {
+      files_.push_back(target / frame_name(frame, frames, extension_));
+    }
+    if (materials.text) {
+      write_bytes(folder_ / materials.name, *materials.text);
+      files_.push_back(target_ / materials.name);
+    }
+    // A manifest may have megabytes: it is written and not kept.
+    for (const auto& [name, content] : extra) {
+      write_bytes(folder_ / name, content);
+      files_.push_back(target_ / name);
+    }
+  }
+
+  void write(int first, const Frames& poses) override {
+    for (Eigen::Index row = 0; row < poses.rows(); ++row) {
+      const PositionsView pose(poses.row(row).data(), header_.connectivity->vertices, 3);
+      const MeshFileWriter& writer = needs_double(pose, extent_) ? exact_writer_ : writer_;
+      writer.write(folder_ / files_[static_cast<std::size_t>(first + row)].filename(), pose);
+    }
+  }
+
+  std::vector<fs::path> commit() override {
+    std::vector<fs::path> files = files_;
+    const fs::path manifest = target_ / kFolderManifest;
+    if (std::ranges::find(files, manifest) == files.end()) files.push_back(manifest);
+    // A format without vertices numbers them anew, so that a rest pose in the old order would not
+    // fit.
+    SequenceHeader kept = header_;
+    kept.rest_is_known = kept.rest_is_known && mesh_codec(extension_)->read;
+    add_rest_beside(outputs_, target_, kept, files);
+    add_times_beside(outputs_, target_, header_, files);
+    outputs_.commit();
+    return files;
+  }
+
+ private:
+  SequenceHeader header_;
+  double extent_;
+  fs::path target_;
+  std::string extension_;
+  PendingOutputs outputs_;
+  fs::path folder_;
+  std::vector<fs::path> files_;
+  MeshFileWriter writer_;
+  /// Of poses far from the origin.
+  MeshFileWriter exact_writer_;
+};
+
+}  // namespace
+
+OpenSequence open_frames(const FrameSeries& series, const fs::path& folder,
+                         const SequenceSource& source, const Context& context) {
+  const std::vector<fs::path>& files = series.frames;
+  const std::vector<int> chosen = selected_frames(source.frames, static_cast<int>(files.size()));
+  OpenSequence open;
+  open.notes = series.notes;
+  for (const int frame : chosen) open.files.push_back(files[static_cast<std::size_t>(frame)]);
+  std::vector<fs::path> frames = open.files;
+  // Where files name no vertices, the first frame says which corners are one, asked for or not.
+  const bool names_vertices = mesh_codec(files[0].extension().string())->read;
+  auto reader =
+      std::make_unique<const MeshFileReader>(names_vertices ? frames[0] : files[0], context);
+  SequenceHeader header;
+  header.connectivity = std::make_shared<const Connectivity>(reader->mesh().connectivity);
+  const auto count = static_cast<int>(files.size());
+  auto [known_times, rest] = folder.empty() ? known_of_folder(files, *reader, open)
+                                            : known_beside(folder, count, *reader, open.files);
+  const FrameTimes times =
+      frame_times(folder.empty() ? files.front().parent_path().string() : folder.string(), count,
+                  std::move(known_times), source);
+  header.times = times.seconds(chosen);
+  header.times_are_known = times.are_known;
+  if (!rest && series.rest) {
+    rest = reader->read(*series.rest);
+    open.files.push_back(*series.rest);
+  }
+  if (rest) {
+    header.rest = *std::move(rest);
+    header.rest_is_known = true;
+  }
+  open.frames =
+      std::make_shared<const FrameFiles>(std::move(reader), std::move(frames), std::move(header));
+  return open;
+}
+
+std::unique_ptr<FrameSink> begin_folder(const SequenceHeader& header, const fs::path& target,
+                                        const SequenceWriteOptions& options,
+                                        const ExtraFiles& extra, const Context& context) {
+  if (options.format != MeshFormat::obj || !header.connectivity->materials) {
+    return std::make_unique<FolderSink>(header, target, options, extra, WrittenMaterials(),
+                                        context);
+  }
+  const WrittenMaterials materials = materials_in_folder(*header.connectivity, target);
+  SequenceHeader named = header;
+  named.connectivity =
+      std::make_shared<const Connectivity>(with_library(*header.connectivity, materials.name));
+  return std::make_unique<FolderSink>(named, target, options, extra, materials, context);
+}
+
+namespace {
+
+/// One mesh is a sequence of one frame.
 OpenSequence open_mesh(const fs::path& path, const SequenceSource& source, const Context& context) {
   return open_frames({{path}}, {}, source, context);
 }

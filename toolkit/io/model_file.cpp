@@ -1,7 +1,9 @@
 #include "toolkit/io/model_file.h"
 
 #include <algorithm>
-#include <functional>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
 
 #include <nlohmann/json.hpp>
 
@@ -20,10 +22,98 @@
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
+namespace fs = std::filesystem;
 
 namespace {
 
-namespace fs = std::filesystem;
+double coefficient_of(const std::string& entry, const std::string& number) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+  if (number.empty() || error != std::errc() || end != number.data() + number.size() ||
+      !std::isfinite(value)) {
+    throw std::invalid_argument("'" + entry + "': expected NAME=NUMBER as in identity003=1.5");
+  }
+  return value;
+}
+
+/// `at` is the last '@'; the file's folders may hold others.
+ModelSpec with_fit(const std::string& text, std::size_t at) {
+  for (auto here = text.find('@'); here < at; here = text.find('@', here + 1)) {
+    if (is_there(text.substr(0, here))) at = here;
+  }
+  const std::string file = text.substr(at + 1);
+  return {text.substr(0, at), {}, file, file};
+}
+
+ModelSpec parsed_spec(const std::string& text) {
+  ModelSpec spec;
+  const auto slash = text.find_last_of('/');
+  const auto at = text.find_last_of('@');
+  if (at != std::string::npos && text.ends_with(".json") && !is_there(text)) {
+    return with_fit(text, at);
+  }
+  if (at == std::string::npos || (slash != std::string::npos && at < slash) || is_there(text)) {
+    spec.path = text;
+    return spec;
+  }
+  spec.path = text.substr(0, at);
+  spec.identity_text = text.substr(at + 1);
+  std::string rest = spec.identity_text + ',';
+  for (auto comma = rest.find(','); comma != std::string::npos; comma = rest.find(',')) {
+    const std::string entry = rest.substr(0, comma);
+    rest.erase(0, comma + 1);
+    const auto equals = entry.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      throw std::invalid_argument("'" + entry + "': expected NAME=NUMBER as in identity003=1.5");
+    }
+    const std::string name = entry.substr(0, equals);
+    const auto is_given = [&](const auto& given) { return given.first == name; };
+    if (std::ranges::any_of(spec.identity, is_given)) {
+      throw std::invalid_argument("'" + text + "': '" + name + "' is given twice");
+    }
+    spec.identity.emplace_back(name, coefficient_of(entry, entry.substr(equals + 1)));
+  }
+  return spec;
+}
+
+}  // namespace
+
+ModelSpec ModelSpec::parse(const std::string& text) {
+  ModelSpec spec = parsed_spec(text);
+  if (!spec.path.empty()) return spec;
+  throw std::invalid_argument("'" + text + "': names no model");
+}
+
+std::vector<std::string> ModelSpec::notes() const {
+  // Standard deviations, or shares of an identity.
+  constexpr double kMostDeviations = 10;
+  std::vector<std::string> notes;
+  for (const auto& [identity_name, coefficient] : identity) {
+    if (std::abs(coefficient) <= kMostDeviations) continue;
+    notes.push_back(path.string() + ": " + identity_name + " is " + readable(coefficient) +
+                    ", expected about -3 to 3");
+  }
+  if (fit && !read_fit(*fit).has_one_identity()) {
+    notes.push_back(fit->string() +
+                    ": holds an identity for each frame, and the person is their mean; `mimetra "
+                    "fit` without `--shape frame` fits one for the clip");
+  }
+  return notes;
+}
+
+std::string ModelSpec::name() const {
+  // "." and "ict-face/" are named after their folder too.
+  const fs::path last = without_trailing_slash(fs::absolute(path));
+  std::error_code unreadable;
+  const std::string stem =
+      fs::is_directory(path, unreadable) ? last.filename().string() : last.stem().string();
+  if (!fit) return identity_text.empty() ? stem : stem + '@' + identity_text;
+  fs::path fitted = fit->stem();
+  if (fitted.extension() == ".fit") fitted = fitted.stem();
+  return stem + '@' + fitted.string();
+}
+
+namespace {
 
 /// Regular files of a folder in natural order, and links that lead nowhere, which reading refuses;
 /// none where it is not a folder.
@@ -166,7 +256,7 @@ Parts parts_of(const fs::path& folder) {
     const fs::path parent = folder.parent_path();
     return {{}, folder, eos_expressions_of(parent.empty() ? "." : parent), {}};
   }
-  if (fs::exists(folder / "model.json", unreadable)) return parts_from_json(folder / "model.json");
+  if (is_there(folder / "model.json")) return parts_from_json(folder / "model.json");
   Parts parts;
   parts.neutral = neutral_of(folder);
   if (parts.neutral) {
@@ -289,8 +379,7 @@ std::vector<std::string> notes_beside(const fs::path& model, const fs::path& exp
 }  // namespace
 
 std::vector<fs::path> meshes_beside_model(const fs::path& path) {
-  std::error_code unreadable;
-  const bool is_named_by_parts = !fs::exists(path / "model.json", unreadable) && neutral_of(path);
+  const bool is_named_by_parts = !is_there(path / "model.json") && neutral_of(path);
   if (!is_named_by_parts) return {};
   std::vector<fs::path> files = meshes_in(path);
   std::erase_if(files, [](const fs::path& file) { return is_neutral(file) || is_companion(file); });
@@ -299,8 +388,7 @@ std::vector<fs::path> meshes_beside_model(const fs::path& path) {
 
 std::vector<std::string> notes_on_unread(const fs::path& path) {
   std::error_code unreadable;
-  if (!fs::is_directory(path, unreadable) || fs::exists(path / "model.json", unreadable) ||
-      !neutral_of(path)) {
+  if (!fs::is_directory(path, unreadable) || is_there(path / "model.json") || !neutral_of(path)) {
     return {};
   }
   if (const auto expressions = expressions_in(path)) return notes_beside(path, *expressions);
@@ -324,7 +412,7 @@ std::vector<fs::path> model_files(const fs::path& path) {
   std::vector<fs::path> files;
   std::error_code unreadable;
   const fs::path list = path / "model.json";
-  if (fs::exists(list, unreadable)) files.push_back(list);
+  if (is_there(list)) files.push_back(list);
   for (const auto& part : {parts.neutral, parts.shape, parts.expressions, parts.identities}) {
     if (!part) continue;
     if (fs::is_directory(*part, unreadable)) {
@@ -344,8 +432,7 @@ std::vector<fs::path> model_files(const fs::path& path) {
 }
 
 MorphableModel read_model(const fs::path& path, const Context& context) {
-  std::error_code unreadable;
-  if (!fs::exists(path, unreadable)) throw IoError(path.string(), "does not exist");
+  if (!is_there(path)) throw IoError(path.string(), "does not exist");
   if (is_scene_file(path)) return MorphableModel(*read_scene(path, context).model);
   const Parts parts = parts_of(path);
   if (parts.shape) {
@@ -404,7 +491,7 @@ bool is_model(const fs::path& path) {
   std::error_code unreadable;
   if (is_scene_file(path)) return true;
   if (!fs::is_directory(path, unreadable)) return path.extension() == ".bin" && is_eos_shape(path);
-  if (fs::exists(path / "model.json", unreadable)) return true;
+  if (is_there(path / "model.json")) return true;
   if (!neutral_of(path)) return eos_expressions_of(path) && eos_shape_of(path);
   return expressions_in(path) || identities_in(path) || meshes_in(path).size() == 1;
 }

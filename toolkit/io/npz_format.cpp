@@ -1,25 +1,257 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstring>
+#include <deque>
+#include <mutex>
 
+#include <zip.h>
+
+#include "toolkit/io/array_file.h"
+#include "toolkit/io/binary_file.h"
 #include "toolkit/io/bytes.h"
-#include "toolkit/io/frame_files.h"
-#include "toolkit/io/npy_cache.h"
-#include "toolkit/io/npy_header.h"
-#include "toolkit/io/npy_values.h"
+#include "toolkit/io/mesh_formats.h"
+#include "toolkit/io/npy_array.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/sequence_parts.h"
-#include "toolkit/io/single_precision.h"
-#include "toolkit/io/temporary_name.h"
-#include "toolkit/io/zip_archive.h"
-#include "toolkit/mesh/coordinate.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
+
+struct OpenZip {
+  fs::path path;
+  zip_t* archive = nullptr;
+  /// The library serves one thread at a time.
+  std::mutex mutex;
+
+  ~OpenZip() {
+    if (archive) zip_discard(archive);
+  }
+  [[noreturn]] void fail(const std::string& name, const std::string& reason) const {
+    throw IoError(path.string(), "its member " + name + " cannot be read: " + reason);
+  }
+};
+
+std::string zip_reason(int code) {
+  zip_error_t error;
+  zip_error_init_with_code(&error, code);
+  std::string reason = zip_error_strerror(&error);
+  zip_error_fini(&error);
+  return reason;
+}
+
+/// A member of an archive, open for reading.
+class ZipMember : public InputBytes {
+ public:
+  ZipMember(std::shared_ptr<OpenZip> zip, std::string name, zip_file_t* file, std::size_t size)
+      : zip_(std::move(zip)), name_(std::move(name)), file_(file), size_(size) {}
+  ~ZipMember() override {
+    const std::lock_guard lock(zip_->mutex);
+    zip_fclose(file_);
+  }
+
+  std::size_t size() const override { return size_; }
+
+ protected:
+  std::shared_ptr<OpenZip> zip_;
+  std::string name_;
+  zip_file_t* file_;
+  std::size_t size_;
+};
+
+/// A member that is not compressed.
+class StoredMember : public ZipMember {
+ public:
+  using ZipMember::ZipMember;
+
+  void read(std::size_t offset, char* to, std::size_t bytes) const override {
+    if (offset > size_ || bytes > size_ - offset) zip_->fail(name_, "it is truncated");
+    if (bytes == 0) return;  // the library crashes where it seeks in a member without bytes
+    const std::lock_guard lock(zip_->mutex);
+    if (zip_fseek(file_, static_cast<zip_int64_t>(offset), SEEK_SET) != 0) fail();
+    for (std::size_t done = 0; done < bytes;) {
+      const zip_int64_t now = zip_fread(file_, to + done, bytes - done);
+      if (now < 0) fail();
+      if (now == 0) zip_->fail(name_, "it is truncated");
+      done += static_cast<std::size_t>(now);
+    }
+  }
+
+ private:
+  [[noreturn]] void fail() const { zip_->fail(name_, zip_file_strerror(file_)); }
+};
+
+/// What a reader asks for first, to see whether the rest is what it expects.
+constexpr std::size_t kBeginning = std::size_t{1} << 17;
+
+/// A compressed member: its beginning is decoded alone, all of it once more is asked for.
+class DeflatedMember : public ZipMember {
+ public:
+  using ZipMember::ZipMember;
+
+  void read(std::size_t offset, char* to, std::size_t bytes) const override {
+    if (offset > size_ || bytes > size_ - offset) zip_->fail(name_, "it is truncated");
+    const std::lock_guard lock(zip_->mutex);
+    const std::size_t end = offset + bytes;
+    if (bytes_.size() < end) decode(end <= kBeginning ? std::min(kBeginning, size_) : size_);
+    std::memcpy(to, bytes_.data() + offset, bytes);
+  }
+
+ private:
+  void decode(std::size_t end) const {
+    std::size_t done = bytes_.size();
+    bytes_.resize(end);
+    while (done < end) {
+      const zip_int64_t now = zip_fread(file_, bytes_.data() + done, end - done);
+      if (now <= 0) fail(now == 0 ? "it is truncated" : zip_file_strerror(file_));
+      done += static_cast<std::size_t>(now);
+    }
+    char beyond = 0;
+    // Only behind the last byte does the library compare checksums.
+    if (end == size_ && zip_fread(file_, &beyond, 1) < 0) fail(zip_file_strerror(file_));
+  }
+
+  [[noreturn]] void fail(const std::string& reason) const {
+    bytes_.clear();
+    zip_->fail(name_, reason);
+  }
+
+  mutable std::string bytes_;
+};
+
+/// Deflate makes nothing more than about a thousand times smaller: a larger claim is a lie, found
+/// before memory is asked for.
+constexpr std::size_t kMostDeflated = 1100;
+
+/// Members of more than 1 GB may unpack to 512 times their stored bytes: a small file must not fill
+/// the memory.
+constexpr std::size_t kUnpackedBytes = std::size_t{1} << 30, kUnpackedShare = 512;
+
+/// A ZIP archive, read by libzip.
+class ZipReader {
+ public:
+  /// Throws IoError.
+  explicit ZipReader(const fs::path& path);
+
+  /// Names of the members, in the archive's order.
+  std::vector<std::string> names() const;
+  /// A member's bytes, as large as the archive says; one that is stored as it is is read in parts,
+  /// a compressed one is kept in memory, all of it once more than its first 128 kB are read. They
+  /// outlive the reader. Throws IoError.
+  std::unique_ptr<const InputBytes> member(const std::string& name) const;
+
+ private:
+  std::shared_ptr<OpenZip> zip_;
+};
+
+ZipReader::ZipReader(const fs::path& path) : zip_(std::make_shared<OpenZip>()) {
+  require_regular_file(path);
+  zip_->path = path;
+  int error = 0;
+  zip_->archive = zip_open(path.c_str(), ZIP_RDONLY, &error);
+  if (!zip_->archive) throw IoError(path.string(), "is no ZIP archive: " + zip_reason(error));
+}
+
+std::vector<std::string> ZipReader::names() const {
+  std::vector<std::string> names;
+  const zip_int64_t count = zip_get_num_entries(zip_->archive, 0);
+  for (zip_int64_t i = 0; i < count; ++i) {
+    const char* name = zip_get_name(zip_->archive, static_cast<zip_uint64_t>(i), 0);
+    if (name) names.emplace_back(name);
+  }
+  return names;
+}
+
+std::unique_ptr<const InputBytes> ZipReader::member(const std::string& name) const {
+  const std::lock_guard lock(zip_->mutex);
+  zip_stat_t stat;
+  zip_stat_init(&stat);
+  if (zip_stat(zip_->archive, name.c_str(), 0, &stat) != 0) {
+    zip_->fail(name, zip_strerror(zip_->archive));
+  }
+  // Both sizes are claims of the archive's.
+  const bool stored = stat.comp_method == ZIP_CM_STORE;
+  if (stat.comp_size > fs::file_size(zip_->path) ||
+      stat.size / (stored ? 1 : kMostDeflated) > stat.comp_size) {
+    zip_->fail(name, "it lies about its size");
+  }
+  if (stat.size > kUnpackedBytes && stat.size / kUnpackedShare > stat.comp_size) {
+    zip_->fail(name, "it would take " + readable(static_cast<double>(stat.size) / 1e6, 3) +
+                         " MB, more than " + std::to_string(kUnpackedShare) +
+                         " times what is stored");
+  }
+  std::unique_ptr<zip_file_t, decltype(&zip_fclose)> file(zip_fopen(zip_->archive, name.c_str(), 0),
+                                                          zip_fclose);
+  if (!file) zip_->fail(name, zip_strerror(zip_->archive));
+  if (stored) {
+    return std::make_unique<const StoredMember>(zip_, name, file.release(), stat.size);
+  }
+  return std::make_unique<const DeflatedMember>(zip_, name, file.release(), stat.size);
+}
+
+/// A ZIP archive, written by libzip.
+class ZipWriter {
+ public:
+  /// Throws OutputError.
+  explicit ZipWriter(fs::path path) : path_(std::move(path)) {
+    int error = 0;
+    archive_ = zip_open(path_.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &error);
+    if (!archive_) fail(zip_reason(error));
+  }
+  ~ZipWriter() {
+    if (archive_) zip_discard(archive_);
+  }
+  ZipWriter(const ZipWriter&) = delete;
+  ZipWriter& operator=(const ZipWriter&) = delete;
+
+  /// Add a member, not compressed and without the time of writing. Throw OutputError.
+  void add(const std::string& name, std::string bytes) {
+    const std::string& kept = contents_.emplace_back(std::move(bytes));
+    add(name, zip_source_buffer(archive_, kept.data(), kept.size(), 0));
+  }
+  void add_file(const std::string& name, const fs::path& file) {
+    add(name, zip_source_file(archive_, file.c_str(), 0, -1));
+  }
+
+  /// Writes the archive. Throws OutputError.
+  void close() {
+    if (zip_close(archive_) != 0) fail(zip_strerror(archive_));
+    archive_ = nullptr;
+  }
+
+ private:
+  void add(const std::string& name, zip_source_t* source) {
+    // The first day that an archive can name, so that bytes depend on nothing but the content.
+    constexpr zip_uint16_t kFirstDate = 1 << 5 | 1;
+    if (!source) fail(zip_strerror(archive_));
+    const zip_int64_t index = zip_file_add(archive_, name.c_str(), source, ZIP_FL_ENC_UTF_8);
+    if (index < 0) {
+      zip_source_free(source);
+      fail(zip_strerror(archive_));
+    }
+    const auto place = static_cast<zip_uint64_t>(index);
+    // A file that anybody reads, whatever the umask.
+    constexpr zip_uint32_t kMode = 0100644U << 16;
+    if (zip_set_file_compression(archive_, place, ZIP_CM_STORE, 0) != 0 ||
+        zip_file_set_external_attributes(archive_, place, 0, ZIP_OPSYS_UNIX, kMode) != 0 ||
+        zip_file_set_dostime(archive_, place, 0, kFirstDate, 0) != 0) {
+      fail(zip_strerror(archive_));
+    }
+  }
+
+  [[noreturn]] void fail(const std::string& reason) const {
+    throw OutputError(committed_name(path_).string(), "cannot be written: " + reason);
+  }
+
+  fs::path path_;
+  zip_t* archive_ = nullptr;
+  /// Members' bytes, which the library reads when it closes the archive.
+  std::deque<std::string> contents_;
+};
 
 // Names of the arrays; what is written has the first of each. An array without a name is NumPy's
 // arr_0.

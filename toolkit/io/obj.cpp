@@ -157,8 +157,8 @@ MeshContent read_obj(const std::string& path, std::string_view bytes, const Cont
   return ObjReader(path, lines).read(context);
 }
 
-MeshFrame obj_frame(const Connectivity& connectivity, bool double_precision,
-                    const Context& context) {
+MeshFrame obj_frame(const Connectivity& connectivity, const std::vector<Field>&,
+                    bool double_precision, const Context& context) {
   double_precision = double_precision || !fits_single_precision(connectivity.texture);
   std::string after;
   for (const Eigen::Vector2d& uv : connectivity.texture.coordinates) {

@@ -69,8 +69,8 @@ MeshContent read_off(const std::string& path, std::string_view bytes, const Cont
   return content;
 }
 
-MeshFrame off_frame(const Connectivity& connectivity, bool double_precision,
-                    const Context& context) {
+MeshFrame off_frame(const Connectivity& connectivity, const std::vector<Field>&,
+                    bool double_precision, const Context& context) {
   const Polygons& polygons = connectivity.polygons;
   std::string after;
   for (int face = 0; face < polygons.size(); ++face) {

@@ -9,13 +9,70 @@
 
 #include "toolkit/io/bytes.h"
 #include "toolkit/io/mesh_codecs.h"
-#include "toolkit/io/om_file.h"
-#include "toolkit/io/om_layout.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {
+
+/// Files of OpenMesh (version 2.2) are a row of chunks: what the rows of one belong to, and what
+/// they are.
+enum class OmOf : unsigned { vertices = 0, mesh = 1, faces = 2, edges = 4, halfedges = 6, end = 7 };
+enum class OmWhat : unsigned {
+  positions = 0,
+  normals = 1,
+  texture = 2,
+  status = 3,
+  colors = 4,
+  custom = 6,
+  topology = 7
+};
+
+/// The 16 bits before a chunk. Of custom properties only the first three count.
+struct OmChunk {
+  bool is_named;
+  OmOf of;
+  OmWhat what;
+  bool is_signed, is_float;
+  unsigned dimension;   ///< 1 to 8 numbers in a row
+  unsigned size_class;  ///< of a number: 1, 2, 4, 8 bytes of integers, 4, 8, 16 of floats
+
+  std::size_t integer_bytes() const { return std::size_t{1} << size_class; }
+  std::size_t float_bytes() const { return std::size_t{4} << size_class; }
+};
+
+OmChunk om_chunk(std::uint16_t bits) {
+  const auto part = [bits](int first, int count) {
+    return (static_cast<unsigned>(bits) >> first) & ((1U << count) - 1);
+  };
+  return {part(1, 1) == 1,
+          static_cast<OmOf>(part(2, 3)),
+          static_cast<OmWhat>(part(5, 4)),
+          part(9, 1) == 1,
+          part(10, 1) == 1,
+          part(11, 3) + 1,
+          part(14, 2)};
+}
+
+/// An integer of 1, 2, 4 or 8 bytes. \pre they are there
+std::int64_t om_integer(const char* at, std::size_t bytes, bool is_signed) {
+  const auto as = [at, is_signed](auto number) -> std::int64_t {
+    using Unsigned = decltype(number);
+    const auto read = number_at<Unsigned>(at, std::endian::little);
+    return is_signed ? static_cast<std::make_signed_t<Unsigned>>(read)
+                     : static_cast<std::int64_t>(read);
+  };
+  switch (bytes) {
+    case 1:
+      return as(std::uint8_t{});
+    case 2:
+      return as(std::uint16_t{});
+    case 4:
+      return as(std::uint32_t{});
+    default:
+      return as(std::uint64_t{});
+  }
+}
 
 /// A file, read piece by piece; nothing is read beyond its end.
 class OmBytes {
@@ -255,7 +312,7 @@ class OmReader {
 /// The corners of faces around which half-edges lead, each a vertex that one points to.
 class OmFaces {
  public:
-  OmFaces(const std::string& path, const OmParts& parts) : path_(path), parts_(parts) {
+  OmFaces(const std::string& path, const OmParts& parts) : parts_(parts) {
     if (parts.counts[1] > 0 && parts.face_halfedges.empty()) {
       throw IoError(path, "has no half-edges of its faces");
     }
@@ -290,7 +347,6 @@ class OmFaces {
     return parts_.halfedges[3 * halfedge + static_cast<std::size_t>(number)];
   }
 
-  const std::string& path_;
   const OmParts& parts_;
   Polygons polygons_;
   std::vector<std::size_t> corners_;

@@ -9,7 +9,6 @@
 #include <new>
 #include <optional>
 #include <set>
-#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -18,7 +17,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "toolkit/io/temporary_name.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/io/written_files.h"
 #include "toolkit/mesh/errors.h"
@@ -27,12 +25,6 @@
 namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
-
-/// "out/" and "out" are one target; only the second has a name to build the temporary one from.
-fs::path without_trailing_slash(fs::path path) {
-  path = path.lexically_normal();
-  return path.has_filename() ? path : path.parent_path();
-}
 
 /// Where the output really goes: what a link leads to, and for "." and ".." the folder's name.
 fs::path real_target(const fs::path& target) {
@@ -448,8 +440,7 @@ const fs::path& PendingOutputs::add(const fs::path& target, PendingOutput::Kind 
 }
 
 void PendingOutputs::add_stale(const fs::path& path, const fs::path& owner) {
-  std::error_code unreadable;
-  if (!fs::exists(path, unreadable)) return;
+  if (!is_there(path)) return;
   if (const std::string reason = reason_to_keep(owner); !reason.empty()) {
     throw OutputError(path.string(), reason);
   }
@@ -548,8 +539,7 @@ void PendingOutputs::swap(const std::vector<PendingOutput*>& order) {
 
 void PendingOutputs::check_same() const {
   for (const auto& [output, unless_same, tells_of_another] : entries_) {
-    std::error_code unreadable;
-    if (unless_same.empty() || !fs::exists(output->target(), unreadable)) continue;
+    if (unless_same.empty() || !is_there(output->target())) continue;
     if (read_file(output->target()) == read_file(output->path())) continue;
     throw OutputError(output->target().string(), unless_same);
   }
@@ -594,8 +584,7 @@ std::string why_to_keep(const fs::path& main, const fs::path& owner, bool overwr
   if (!owner.empty()) {
     return "belongs to '" + owner.filename().string() + "', which stays; choose another name";
   }
-  std::error_code unreadable;
-  if (!main.empty() && !fs::exists(main, unreadable)) {
+  if (!main.empty() && !is_there(main)) {
     return "stands without '" + main.filename().string() +
            "', a part of which it would be; move it, or choose another name";
   }

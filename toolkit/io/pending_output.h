@@ -7,7 +7,7 @@
 #include <system_error>
 #include <vector>
 
-#include "toolkit/io/temporary_name.h"
+#include "toolkit/io/binary_file.h"
 
 namespace mimetra {
 

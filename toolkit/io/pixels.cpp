@@ -1,7 +1,16 @@
 #include "toolkit/io/pixels.h"
 
 #include <algorithm>
+#include <bit>
+#include <csetjmp>
+#include <cstdio>
+#include <cstring>
+#include <vector>
 
+#include <jpeglib.h>
+#include <png.h>
+
+#include "toolkit/io/bytes.h"
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {
@@ -15,6 +24,23 @@ std::uint16_t luma_of(const std::uint16_t* rgb) {
 
 /// Above it channels differ by more than compression makes of grey.
 constexpr int kColored = 65535 / 16;
+
+[[noreturn]] void fail_truncated(const std::string& path, std::uint64_t bytes) {
+  throw IoError(path, "the image is truncated after " + std::to_string(bytes) +
+                          " bytes; copy or export it again");
+}
+
+/// Throws IoError for more than kMostPixels, and for more than `most_per_byte` of a file of so many
+/// bytes, which is truncated then.
+void check_pixel_count(const std::string& path, std::uint64_t width, std::uint64_t height,
+                       std::uint64_t bytes, std::uint64_t most_per_byte) {
+  if (width * height > kMostPixels) {
+    throw IoError(path, "says it has " + std::to_string(width) + " x " + std::to_string(height) +
+                            " pixels, and " + std::to_string(kMostPixels) +
+                            " can be read; make it smaller, or is it damaged?");
+  }
+  if (width * height / most_per_byte > bytes) fail_truncated(path, bytes);
+}
 
 }  // namespace
 
@@ -32,16 +58,243 @@ void Pixels::set(Eigen::Index row, Eigen::Index column, const std::uint16_t* rgb
   is_colored_ = is_colored_ || most - least > kColored;
 }
 
-void check_pixel_count(const std::string& path, std::uint64_t width, std::uint64_t height,
-                       std::uint64_t bytes, std::uint64_t most_per_byte) {
-  if (width * height > kMostPixels) {
-    throw IoError(path, "says it has " + std::to_string(width) + " x " + std::to_string(height) +
-                            " pixels, and " + std::to_string(kMostPixels) +
-                            " can be read; make it smaller, or is it damaged?");
+namespace {
+
+/// libpng jumps out of its functions where a file is damaged. No function that it may jump out of,
+/// or into, has a variable with a destructor; all of those are members.
+class PngDecoder {
+ public:
+  explicit PngDecoder(const std::string& bytes) : bytes_(bytes) {
+    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, fail, ignore);
+    if (png_) info_ = png_create_info_struct(png_);
+    if (!info_) {
+      png_destroy_read_struct(&png_, nullptr, nullptr);
+      throw std::bad_alloc();
+    }
+    png_set_read_fn(png_, this, read);
+    // Texts and profiles are read over, however long: packed, they may be a thousand times longer.
+    constexpr int kAllButPixelsAndOpacity = -1, kUnlimited = 0;
+    png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, kAllButPixelsAndOpacity);
+    png_set_chunk_malloc_max(png_, kUnlimited);
+    // What libpng would mend or leave out, as a damaged palette or opacity, makes other weights.
+    png_set_benign_errors(png_, 0);
+    png_set_crc_action(png_, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
   }
-  if (width * height / most_per_byte <= bytes) return;
-  throw IoError(path, "the image is truncated after " + std::to_string(bytes) +
-                          " bytes; copy or export it again");
+  PngDecoder(const PngDecoder&) = delete;
+  PngDecoder& operator=(const PngDecoder&) = delete;
+  ~PngDecoder() { png_destroy_read_struct(&png_, &info_, nullptr); }
+
+  /// False where it failed: message().
+  bool read_header() {
+    if (setjmp(png_jmpbuf(png_))) return false;
+    png_read_info(png_, info_);
+    return true;
+  }
+  std::uint64_t width() const { return png_get_image_width(png_, info_); }
+  std::uint64_t height() const { return png_get_image_height(png_, info_); }
+
+  std::uint64_t bits_per_pixel() const {
+    return std::uint64_t{png_get_channels(png_, info_)} * png_get_bit_depth(png_, info_);
+  }
+  bool has_opacity() const {
+    return (png_get_color_type(png_, info_) & PNG_COLOR_MASK_ALPHA) != 0 ||
+           png_get_valid(png_, info_, PNG_INFO_tRNS) != 0;
+  }
+
+  /// \pre read_header(), and `pixels` are width() x height(). The same. Row by row: an interlaced
+  /// picture comes as seven smaller ones.
+  bool read_pixels(Pixels& pixels) {
+    row_.resize(4 * width());
+    if (setjmp(png_jmpbuf(png_))) return false;
+    png_set_expand_16(png_);
+    png_set_gray_to_rgb(png_);
+    png_set_add_alpha(png_, 0xffff, PNG_FILLER_AFTER);
+    if (std::endian::native == std::endian::little) png_set_swap(png_);
+    png_read_update_info(png_, info_);
+    if (png_get_interlace_type(png_, info_) == PNG_INTERLACE_NONE) {
+      read_grid(pixels, {0, 0, 1, 1});
+    } else {
+      for (int pass = 0; pass < PNG_INTERLACE_ADAM7_PASSES; ++pass) {
+        read_grid(pixels, {PNG_PASS_START_ROW(pass), PNG_PASS_START_COL(pass),
+                           1 << PNG_PASS_ROW_SHIFT(pass), 1 << PNG_PASS_COL_SHIFT(pass)});
+      }
+    }
+    png_read_end(png_, nullptr);
+    return true;
+  }
+
+  const std::string& message() const { return message_; }
+  bool is_truncated() const { return is_truncated_; }
+
+ private:
+  /// Which pixels of the picture come next.
+  struct Grid {
+    Eigen::Index row, column, row_step, column_step;
+  };
+  /// \pre setjmp() was called
+  void read_grid(Pixels& pixels, const Grid& grid) {
+    const Eigen::Index rows = pixels.luma().rows(), columns = pixels.luma().cols();
+    if (grid.column >= columns) return;
+    for (Eigen::Index y = grid.row; y < rows; y += grid.row_step) {
+      png_read_row(png_, reinterpret_cast<png_bytep>(row_.data()), nullptr);
+      const std::uint16_t* rgba = row_.data();
+      for (Eigen::Index x = grid.column; x < columns; x += grid.column_step, rgba += 4) {
+        pixels.set(y, x, rgba);
+      }
+    }
+  }
+
+  static void read(png_structp png, png_bytep data, std::size_t size) {
+    auto& self = *static_cast<PngDecoder*>(png_get_io_ptr(png));
+    if (size > self.bytes_.size() - self.at_) {
+      self.is_truncated_ = true;
+      png_error(png, "end of file");
+    }
+    std::memcpy(data, self.bytes_.data() + self.at_, size);
+    self.at_ += size;
+  }
+  [[noreturn]] static void fail(png_structp png, png_const_charp message) {
+    static_cast<PngDecoder*>(png_get_error_ptr(png))->message_ = message;
+    png_longjmp(png, 1);
+  }
+  static void ignore(png_structp, png_const_charp) {}
+
+  const std::string& bytes_;
+  std::size_t at_ = 0;
+  std::vector<std::uint16_t> row_;
+  std::string message_;
+  bool is_truncated_ = false;
+  png_structp png_ = nullptr;
+  png_infop info_ = nullptr;
+};
+
+[[noreturn]] void fail_to_decode(const std::string& path, const std::string& bytes,
+                                 const PngDecoder& decoder) {
+  if (decoder.is_truncated()) fail_truncated(path, bytes.size());
+  throw IoError(path, "is a damaged PNG file (" + decoder.message() + "); export it again");
+}
+
+}  // namespace
+
+Pixels pixels_of_png(const std::string& path, const std::string& bytes) {
+  PngDecoder decoder(bytes);
+  if (!decoder.read_header()) fail_to_decode(path, bytes, decoder);
+  check_pixel_count(path, decoder.width(), decoder.height(), bytes.size(),
+                    8 * kMostInflated / decoder.bits_per_pixel());
+  Pixels pixels(decoder.width(), decoder.height(), decoder.has_opacity());
+  if (!decoder.read_pixels(pixels)) fail_to_decode(path, bytes, decoder);
+  return pixels;
+}
+
+namespace {
+
+/// libjpeg calls back where a file is damaged, and must not return from there: it is jumped out of.
+/// No function that is jumped out of, or into, has a variable with a destructor.
+class JpegDecoder {
+ public:
+  explicit JpegDecoder(const std::string& bytes) : bytes_(bytes) {
+    state_.err = jpeg_std_error(&errors_);
+    errors_.error_exit = fail;
+    errors_.emit_message = refuse_warnings;
+    state_.client_data = this;
+  }
+  JpegDecoder(const JpegDecoder&) = delete;
+  JpegDecoder& operator=(const JpegDecoder&) = delete;
+  ~JpegDecoder() { jpeg_destroy_decompress(&state_); }
+
+  /// False where it failed: message().
+  bool read_header() {
+    if (setjmp(on_error_)) return false;
+    jpeg_create_decompress(&state_);
+    progress_.progress_monitor = refuse_many_scans;
+    state_.progress = &progress_;
+    jpeg_mem_src(&state_, reinterpret_cast<const unsigned char*>(bytes_.data()),
+                 static_cast<unsigned long>(bytes_.size()));
+    jpeg_read_header(&state_, TRUE);
+    return true;
+  }
+  std::uint64_t width() const { return state_.image_width; }
+  std::uint64_t height() const { return state_.image_height; }
+
+  /// Arithmetic coding needs less than a bit for a block of pixels.
+  bool is_arithmetic() const { return state_.arith_code; }
+
+  /// \pre read_header(), and `pixels` are width() x height(). The same.
+  bool read_pixels(Pixels& pixels) {
+    row_.resize(3 * width());
+    if (setjmp(on_error_)) return false;
+    state_.out_color_space = JCS_RGB;
+    jpeg_start_decompress(&state_);
+    while (state_.output_scanline < state_.output_height) {
+      const Eigen::Index y = state_.output_scanline;
+      JSAMPROW row = row_.data();
+      jpeg_read_scanlines(&state_, &row, 1);
+      for (Eigen::Index x = 0; x < pixels.luma().cols(); ++x) set(pixels, y, x);
+    }
+    jpeg_finish_decompress(&state_);
+    return true;
+  }
+
+  std::string message() const { return message_.data(); }
+
+ private:
+  void set(Pixels& pixels, Eigen::Index y, Eigen::Index x) const {
+    // 255 is 65535.
+    constexpr std::uint16_t kTo16Bits = 257;
+    std::array<std::uint16_t, 4> rgba = {0, 0, 0, 0xffff};
+    for (std::size_t c = 0; c < 3; ++c) {
+      rgba[c] = static_cast<std::uint16_t>(kTo16Bits * row_[3 * static_cast<std::size_t>(x) + c]);
+    }
+    pixels.set(y, x, rgba.data());
+  }
+
+  [[noreturn]] static void fail(j_common_ptr state) {
+    auto& self = *static_cast<JpegDecoder*>(state->client_data);
+    state->err->format_message(state, self.message_.data());
+    longjmp(self.on_error_, 1);
+  }
+  /// What is missing would be filled with grey.
+  static void refuse_warnings(j_common_ptr state, int level) {
+    if (level < 0) fail(state);
+  }
+
+  /// Scans of a few bytes each go over all blocks: encoders make ten, the most careful of them some
+  /// dozens.
+  static void refuse_many_scans(j_common_ptr state) {
+    constexpr int kMostScans = 100;
+    if (reinterpret_cast<j_decompress_ptr>(state)->input_scan_number <= kMostScans) return;
+    auto& self = *static_cast<JpegDecoder*>(state->client_data);
+    std::snprintf(self.message_.data(), self.message_.size(), "more than %d scans", kMostScans);
+    longjmp(self.on_error_, 1);
+  }
+
+  const std::string& bytes_;
+  std::vector<unsigned char> row_;
+  jpeg_decompress_struct state_ = {};
+  jpeg_progress_mgr progress_ = {};
+  jpeg_error_mgr errors_ = {};
+  std::jmp_buf on_error_ = {};
+  std::array<char, JMSG_LENGTH_MAX> message_ = {};
+};
+
+[[noreturn]] void fail_to_decode(const std::string& path, const JpegDecoder& decoder) {
+  throw IoError(path, "is a damaged JPEG file, or of a kind that cannot be read (" +
+                          decoder.message() + "); export it again as RGB or grey");
+}
+
+}  // namespace
+
+Pixels pixels_of_jpeg(const std::string& path, const std::string& bytes) {
+  JpegDecoder decoder(bytes);
+  if (!decoder.read_header()) fail_to_decode(path, decoder);
+  // Huffman's codes need a bit or more for each block of 8 x 8, of which there is one for 16 of
+  // them where colours are sampled more coarsely.
+  constexpr std::uint64_t kHuffman = 8 * 64 * 16;
+  check_pixel_count(path, decoder.width(), decoder.height(), bytes.size(),
+                    decoder.is_arithmetic() ? kMostPixels : kHuffman);
+  Pixels pixels(decoder.width(), decoder.height(), false);
+  if (!decoder.read_pixels(pixels)) fail_to_decode(path, decoder);
+  return pixels;
 }
 
 }  // namespace mimetra

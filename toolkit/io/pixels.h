@@ -53,9 +53,4 @@ constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 26;
 Pixels pixels_of_png(const std::string& path, const std::string& bytes);
 Pixels pixels_of_jpeg(const std::string& path, const std::string& bytes);
 
-/// Throws IoError for more than kMostPixels, and for more than `most_per_byte` of a file of so many
-/// bytes, which is truncated then.
-void check_pixel_count(const std::string& path, std::uint64_t width, std::uint64_t height,
-                       std::uint64_t bytes, std::uint64_t most_per_byte);
-
 }  // namespace mimetra

@@ -8,12 +8,147 @@
 
 #include "toolkit/io/bytes.h"
 #include "toolkit/io/mesh_codecs.h"
-#include "toolkit/io/ply_header.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
+
 namespace {
+
+enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+enum class PlyFormat { ascii, little_endian, big_endian };
+
+struct PlyProperty {
+  std::string name;
+  PlyType type;  ///< of the value, or of a list's items
+  bool is_list = false;
+  PlyType count_type = PlyType::uint8;  ///< of a list's length
+};
+
+struct PlyElement {
+  std::string name;
+  std::size_t count;
+  std::vector<PlyProperty> properties;
+};
+
+/// What stands before `end_header`.
+struct PlyHeader {
+  PlyFormat format;
+  std::vector<PlyElement> elements;
+  std::size_t bytes;  ///< where the data starts
+  int lines;
+};
+
+PlyType type_named(const TextCursor& cursor, std::string_view name) {
+  static constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes = {{
+      {"char", PlyType::int8},
+      {"int8", PlyType::int8},
+      {"uchar", PlyType::uint8},
+      {"uint8", PlyType::uint8},
+      {"short", PlyType::int16},
+      {"int16", PlyType::int16},
+      {"ushort", PlyType::uint16},
+      {"uint16", PlyType::uint16},
+      {"int", PlyType::int32},
+      {"int32", PlyType::int32},
+      {"uint", PlyType::uint32},
+      {"uint32", PlyType::uint32},
+      {"float", PlyType::float32},
+      {"float32", PlyType::float32},
+      {"double", PlyType::float64},
+      {"float64", PlyType::float64},
+  }};
+  for (const auto& [known, type] : kTypes) {
+    if (known == name) return type;
+  }
+  cursor.fail("'" + std::string(name) + "' is no type of PLY");
+}
+
+PlyFormat read_format(TextCursor& cursor) {
+  const std::string_view name = cursor.word();
+  if (name == "ascii") return PlyFormat::ascii;
+  if (name == "binary_little_endian") return PlyFormat::little_endian;
+  if (name == "binary_big_endian") return PlyFormat::big_endian;
+  cursor.fail("expected format ascii, binary_little_endian or binary_big_endian, found '" +
+              std::string(name) + "'");
+}
+
+PlyElement read_element(TextCursor& cursor) {
+  PlyElement element{std::string(cursor.word()), 0, {}};
+  const long long count = cursor.integer(cursor.word(), "an element's count");
+  if (count < 0) cursor.fail("element " + element.name + " has a negative count");
+  element.count = static_cast<std::size_t>(count);
+  return element;
+}
+
+PlyProperty read_property(TextCursor& cursor, const std::string& element) {
+  PlyProperty property;
+  std::string_view type = cursor.word();
+  if (type == "list") {
+    property.is_list = true;
+    property.count_type = type_named(cursor, cursor.word());
+    if (property.count_type == PlyType::float32 || property.count_type == PlyType::float64) {
+      cursor.fail("a list's length is no integer");
+    }
+    type = cursor.word();
+  }
+  property.type = type_named(cursor, type);
+  property.name = cursor.word();
+  if (property.name.empty()) cursor.fail("a property of " + element + " has no name");
+  return property;
+}
+
+/// Throws IoError that names the line.
+PlyHeader read_ply_header(const std::string& path, std::string_view bytes) {
+  TextCursor cursor(path, without_byte_order_mark(bytes), {});
+  if (cursor.word() != "ply")
+    cursor.fail("expected 'ply', found another word: this is no PLY file");
+  PlyHeader header;
+  std::optional<PlyFormat> format;
+  while (true) {
+    cursor.next_line();
+    if (cursor.at_end()) cursor.fail("the header has no end_header");
+    const std::string_view keyword = cursor.word();
+    if (keyword == "format") {
+      format = read_format(cursor);
+    } else if (keyword == "element") {
+      header.elements.push_back(read_element(cursor));
+    } else if (keyword == "property") {
+      if (header.elements.empty()) cursor.fail("a property stands before the first element");
+      PlyElement& element = header.elements.back();
+      element.properties.push_back(read_property(cursor, element.name));
+    } else if (keyword == "end_header") {
+      break;
+    } else if (!keyword.empty() && keyword != "comment" && keyword != "obj_info") {
+      cursor.fail("'" + std::string(keyword.substr(0, 40)) + "' is no keyword of a PLY header");
+    }
+  }
+  if (!format) cursor.fail("the header names no format");
+  cursor.next_line();
+  header.format = *format;
+  header.bytes = bytes.size() - cursor.left();
+  header.lines = cursor.line() - 1;
+  return header;
+}
+
+std::size_t bytes_of(PlyType type) {
+  switch (type) {
+    case PlyType::int8:
+    case PlyType::uint8:
+      return 1;
+    case PlyType::int16:
+    case PlyType::uint16:
+      return 2;
+    case PlyType::int32:
+    case PlyType::uint32:
+    case PlyType::float32:
+      return 4;
+    case PlyType::float64:
+      return 8;
+  }
+  return 0;
+}
 
 /// The numbers after the header, whatever they are written in.
 class PlyBody {
@@ -306,6 +441,85 @@ MeshContent read_ply(const std::string& path, std::string_view bytes, const Cont
     content.texture.corners = content.polygons.corners;
   }
   return content;
+}
+
+namespace {
+
+/// How the vertices lie in a binary file: right behind the header, at equal distances.
+struct VertexBlock {
+  PlyType type = PlyType::float32;  ///< of x, y and z
+  std::endian order = std::endian::little;
+  std::size_t stride = 0;              ///< bytes from vertex to vertex
+  std::array<std::size_t, 3> at = {};  ///< of x, y and z in a vertex
+  std::size_t bytes = 0;               ///< of all vertices
+};
+
+/// None where the first element is none of vertices of fixed size with x, y, z of one real type.
+std::optional<VertexBlock> block_of(const PlyHeader& header) {
+  if (header.format == PlyFormat::ascii || header.elements.empty()) return std::nullopt;
+  const PlyElement& element = header.elements.front();
+  if (element.name != "vertex") return std::nullopt;
+  VertexBlock block;
+  if (header.format == PlyFormat::big_endian) block.order = std::endian::big;
+  std::array<std::optional<PlyType>, 3> types;
+  for (const PlyProperty& property : element.properties) {
+    if (property.is_list) return std::nullopt;
+    const std::size_t axis = std::string_view("xyz").find(property.name);
+    if (property.name.size() == 1 && axis < 3) {
+      types[axis] = property.type;
+      block.at[axis] = block.stride;
+    }
+    block.stride += bytes_of(property.type);
+  }
+  if (types[0] != PlyType::float32 && types[0] != PlyType::float64) return std::nullopt;
+  if (types[1] != types[0] || types[2] != types[0]) return std::nullopt;
+  block.type = *types[0];
+  block.bytes = element.count * block.stride;
+  return block;
+}
+
+template <typename Number>
+bool decode(const VertexBlock& block, const char* vertex, std::span<double> coordinates) {
+  bool all = true;
+  for (std::size_t i = 0; i < coordinates.size(); i += 3, vertex += block.stride) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double value = number_at<Number>(vertex + block.at[axis], block.order);
+      coordinates[i + axis] = value;
+      all = all && is_coordinate(value);
+    }
+  }
+  return all;
+}
+
+/// What stands before and after the vertices.
+class PlyLayout : public MeshLayout {
+ public:
+  PlyLayout(std::string first, std::size_t header_bytes, const VertexBlock& block)
+      : block_(block),
+        after_(first.substr(header_bytes + block.bytes)),
+        before_(std::move(first.erase(header_bytes))) {}
+
+  bool read(std::string_view bytes, std::span<double> coordinates) const override {
+    if (bytes.size() != before_.size() + block_.bytes + after_.size()) return false;
+    if (!bytes.starts_with(before_) || !bytes.ends_with(after_)) return false;
+    const char* vertices = bytes.data() + before_.size();
+    return block_.type == PlyType::float32 ? decode<float>(block_, vertices, coordinates)
+                                           : decode<double>(block_, vertices, coordinates);
+  }
+
+ private:
+  const VertexBlock block_;
+  const std::string after_;
+  const std::string before_;
+};
+
+}  // namespace
+
+std::unique_ptr<const MeshLayout> ply_layout(std::string first, std::size_t, const Context&) {
+  const PlyHeader header = read_ply_header("", first);
+  const std::optional<VertexBlock> block = block_of(header);
+  if (!block) return nullptr;
+  return std::make_unique<PlyLayout>(std::move(first), header.bytes, *block);
 }
 
 }  // namespace mimetra

@@ -2,6 +2,7 @@
 
 #include "toolkit/io/bytes.h"
 #include "toolkit/io/mesh_codecs.h"
+#include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
 namespace {
@@ -104,8 +105,8 @@ MeshFrame frame(const Connectivity& connectivity, std::string before, const Cont
 
 }  // namespace
 
-MeshFrame ply_frame(const Connectivity& connectivity, bool double_precision,
-                    const Context& context) {
+MeshFrame ply_frame(const Connectivity& connectivity, const std::vector<Field>&,
+                    bool double_precision, const Context& context) {
   double_precision = double_precision || !fits_single_precision(connectivity.texture);
   std::string before = header(connectivity, double_precision);
   return double_precision ? frame<double>(connectivity, std::move(before), context)

@@ -1,20 +1,18 @@
 #include "toolkit/io/point_cache.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
-#include <span>
 
 #include "toolkit/io/bytes.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/mesh_file.h"
+#include "toolkit/io/mesh_formats.h"
 #include "toolkit/io/sequence_parts.h"
-#include "toolkit/io/single_precision.h"
-#include "toolkit/mesh/coordinate.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;

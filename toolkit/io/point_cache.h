@@ -6,12 +6,10 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "toolkit/io/binary_file.h"
-#include "toolkit/io/sequence_options.h"
+#include "toolkit/io/sequence_format.h"
 #include "toolkit/mesh/context.h"
 
 /// Files with positions over time and without faces. Internal to the formats that are such files.

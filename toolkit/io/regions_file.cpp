@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/json_text.h"
+#include "toolkit/io/mesh_codecs.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/om_file.h"
 #include "toolkit/io/painting_file.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/io/whole_file.h"

@@ -1,7 +1,6 @@
 #include "toolkit/io/retargeting_file.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -10,6 +9,7 @@
 
 #include "toolkit/io/csv.h"
 #include "toolkit/io/json_text.h"
+#include "toolkit/io/text_cursor.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 
@@ -154,9 +154,8 @@ std::string plain_matrix_csv(const Retargeting& map, const Eigen::MatrixXd& matr
   for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
     text += csv_field(map.target_names.at(static_cast<std::size_t>(row)));
     for (const double number : matrix.row(row)) {
-      char buffer[32];
       text += ',';
-      text.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, number).ptr);
+      append_number(text, number);
     }
     text += '\n';
   }

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/json_text.h"
+#include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/suggestion.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
@@ -157,7 +157,7 @@ std::optional<std::filesystem::path> rules_beside(const std::filesystem::path& m
   std::error_code unreadable;
   if (!std::filesystem::is_directory(model, unreadable)) return {};
   const std::filesystem::path file = model / "rules.json";
-  if (!std::filesystem::exists(file, unreadable)) return {};
+  if (!is_there(file)) return {};
   return file;
 }
 

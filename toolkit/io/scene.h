@@ -6,13 +6,30 @@
 #include <string>
 #include <vector>
 
-#include "toolkit/io/weight_curve.h"
+#include <Eigen/Core>
+
 #include "toolkit/mesh/context.h"
 #include "toolkit/model/blendshape_model.h"
 
 /// Files of a whole scene, such as glTF and USD: meshes with morph targets and their weights over
 /// time. Internal to their formats.
 namespace mimetra {
+
+/// Weights of the targets of one part over time: keys, and what lies between them.
+struct WeightCurve {
+  enum class Between { step, linear, cubic };
+
+  Between between = Between::linear;
+  Eigen::VectorXd times;   ///< of the keys (K), rising
+  Eigen::MatrixXd values;  ///< K x targets; one row without times for weights that stay
+  /// Slopes before and after each key, K x targets, of cubic curves.
+  Eigen::MatrixXd slopes_in, slopes_out;
+
+  /// The weights at a time; those of the nearest key outside of the keys. \pre there is a row
+  Eigen::RowVectorXd at(double time) const;
+  /// Whether they are the same at all times. \pre there is a row
+  bool is_still() const;
+};
 
 /// Displacements of a part that one weight drives.
 struct SceneTarget {

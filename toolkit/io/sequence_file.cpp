@@ -1,15 +1,16 @@
 #include "toolkit/io/sequence_file.h"
 
-#include "toolkit/io/driven_model.h"
+#include <stdexcept>
+#include <utility>
+
 #include "toolkit/io/fit_file.h"
-#include "toolkit/io/foreign_files.h"
 #include "toolkit/io/frame_files.h"
-#include "toolkit/io/frame_sequence.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/missing_path.h"
 #include "toolkit/io/model_file.h"
+#include "toolkit/io/pending_output.h"
 #include "toolkit/io/scene.h"
-#include "toolkit/io/sequence_format.h"
+#include "toolkit/io/sequence_parts.h"
+#include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/animation.h"
@@ -17,13 +18,8 @@
 
 namespace mimetra {
 namespace fs = std::filesystem;
-namespace {
 
-/// What cannot even be asked for, such as a name too long, is not there.
-bool is_there(const fs::path& path) {
-  std::error_code unreadable;
-  return fs::exists(path, unreadable);
-}
+namespace {
 
 OpenSequence open_driven(const ModelSpec& spec, const SequenceSource& source,
                          const Context& context) {
@@ -123,6 +119,97 @@ SequenceRead read_sequence(const std::string& text, const SequenceSource& source
                     std::move(open.notes)};
   context.report(1);
   return read;
+}
+
+std::unique_ptr<FrameSink> begin_sequence(const SequenceHeader& header, const fs::path& target,
+                                          const SequenceWriteOptions& options,
+                                          const ExtraFiles& extra, const Context& context) {
+  check_options(options);
+  if (header.times.size() == 0) throw std::invalid_argument("the sequence has no frames");
+  if (target.extension().empty()) return begin_folder(header, target, options, extra, context);
+  if (const SequenceFormat* format = sequence_format(target)) {
+    return format->begin(header, target, options, extra, context);
+  }
+  throw std::invalid_argument(target.string() + ": no sequence can be written as '" +
+                              target.extension().string() + "', expected " +
+                              joined(sequence_extensions()) + "; a folder of this name is '" +
+                              target.string() + "/'");
+}
+
+std::vector<fs::path> write_sequence(const FrameSource& sequence, const fs::path& target,
+                                     const SequenceWriteOptions& options, const ExtraFiles& extra,
+                                     const Context& context) {
+  if (const auto* animation = dynamic_cast<const Animation*>(&sequence)) {
+    const SequenceFormat* format = sequence_format(target);
+    if (format && format->write_animation && animation->model().expressions().size() > 0) {
+      check_options(options);
+      return format->write_animation(*animation, target, options, extra, context);
+    }
+  }
+  const auto sink = begin_sequence(sequence.header(), target, options, extra, context.part(0, 0));
+  context.report(0);
+  for_each_block(
+      sequence, [&sink](int first, const Frames& poses) { sink->write(first, poses); },
+      context.without_ranks());
+  context.report(1);
+  return sink->commit();
+}
+
+namespace {
+
+constexpr const char* kCorrespondenceSuffix = ".correspondence.json";
+
+/// What follows the name in a second file of a format.
+std::vector<std::string> own_suffixes_of(const fs::path& file) {
+  const std::string extension = lower_extension(file);
+  if (extension == ".gltf") return {".bin"};
+  if (extension == ".pvd") return {".vtp.series"};
+  return {};
+}
+
+/// The same in those of the files that a sequence may be written with.
+std::vector<std::string> suffixes_of(const fs::path& sequence) {
+  std::vector<std::string> suffixes = {kCorrespondenceSuffix};
+  const std::string extension = lower_extension(sequence);
+  const SequenceFormat* format = sequence_format(sequence);
+  if (extension.empty()) suffixes.clear();  // a folder holds it
+  if (extension.empty() || (format && format->has_companions)) {
+    suffixes.insert(suffixes.end(), {kRestSuffix, kTimesSuffix});
+  }
+  if (format && format->has_companions) suffixes.emplace_back(kTopologySuffix);
+  for (std::string& own : own_suffixes_of(sequence)) suffixes.push_back(std::move(own));
+  return suffixes;
+}
+
+std::vector<std::string> refused_beside(const fs::path& file,
+                                        const std::vector<std::string>& suffixes, bool overwrite) {
+  const fs::path main = file.has_filename() ? file : file.parent_path();
+  std::vector<std::string> refused;
+  for (const std::string& suffix : suffixes) {
+    const bool has_owner =
+        suffix == kRestSuffix || suffix == kTimesSuffix || suffix == kTopologySuffix;
+    const fs::path path =
+        has_owner ? beside(file, suffix) : fs::path(main).replace_extension(suffix);
+    if (!is_there(path)) continue;
+    const std::string reason =
+        why_to_keep(main, has_owner ? other_of_name(file) : fs::path(), overwrite);
+    if (reason.empty()) continue;
+    refused.push_back(path.string() + ": " + reason +
+                      "; a run that writes another content there is refused");
+  }
+  return refused;
+}
+
+}  // namespace
+
+std::vector<std::string> refused_companions(const fs::path& sequence, bool overwrite) {
+  return refused_beside(sequence, suffixes_of(sequence), overwrite);
+}
+
+std::vector<std::string> refused_parts(const fs::path& file, bool overwrite, bool may_be_paired) {
+  std::vector<std::string> suffixes = own_suffixes_of(file);
+  if (may_be_paired && !lower_extension(file).empty()) suffixes.emplace_back(kCorrespondenceSuffix);
+  return refused_beside(file, suffixes, overwrite);
 }
 
 }  // namespace mimetra

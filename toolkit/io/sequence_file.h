@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "toolkit/io/sequence_options.h"
+#include "toolkit/io/sequence_format.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/mesh/mesh_sequence.h"
 
@@ -57,5 +57,15 @@ std::vector<std::filesystem::path> write_sequence(const FrameSource& sequence,
                                                   const SequenceWriteOptions& = {},
                                                   const ExtraFiles& extra = {},
                                                   const Context& context = {});
+
+/// Files that stand beside a sequence which is about to be written, and that its own parts may not
+/// replace: "take.rest.ply: belongs to 'take.pc2', ...". Whether it has such a part, and one with
+/// another content, is known when it is written.
+std::vector<std::string> refused_companions(const std::filesystem::path& sequence, bool overwrite);
+
+/// The same of a model, regions or a table, whose parts are those of the format alone (.gltf, .pvd)
+/// and, where it may be paired, a correspondence.
+std::vector<std::string> refused_parts(const std::filesystem::path& file, bool overwrite,
+                                       bool may_be_paired);
 
 }  // namespace mimetra

@@ -1,29 +1,24 @@
 #include "toolkit/io/sequence_parts.h"
 
-#include <cmath>
-#include <string>
-
 #include "toolkit/io/csv.h"
 #include "toolkit/io/frame_files.h"
-#include "toolkit/io/mesh_codecs.h"
-#include "toolkit/io/mesh_file.h"
-#include "toolkit/io/sequence_companions.h"
+#include "toolkit/io/model_file.h"
+#include "toolkit/io/scene.h"
+#include "toolkit/io/text_cursor.h"
+#include "toolkit/io/weight_file.h"
 #include "toolkit/io/whole_file.h"
+#include "toolkit/io/written_files.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/median.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/model/animation.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
+
 namespace {
 
 /// Of NAME.times.csv, in seconds.
 constexpr std::string_view kTimeColumn = "time";
-
-bool stands(const fs::path& path) {
-  std::error_code unreadable;
-  return fs::exists(path, unreadable);
-}
 
 /// A file that only mimetra reads: it holds what the program held.
 void add_pose(PendingOutputs& outputs, const fs::path& sequence, const std::string& suffix,
@@ -38,28 +33,6 @@ void add_pose(PendingOutputs& outputs, const fs::path& sequence, const std::stri
 
 }  // namespace
 
-void check_rate(const std::string& name, const Eigen::VectorXd& times,
-                const SequenceSource& source) {
-  if (!source.fps || times.size() == 0) return;
-  throw std::invalid_argument(name + ": its " + std::to_string(times.size()) +
-                              " frames have times of their own, " + readable(times[0]) + " to " +
-                              readable(times[times.size() - 1]) +
-                              " s, and option 'fps' is for what has none; leave it out");
-}
-
-std::string note_on_steps(const Eigen::VectorXd& times) {
-  constexpr double kLongest = 1;
-  constexpr Eigen::Index kMany = 10;
-  if (times.size() < 2) return "";
-  const double step = median_difference(times);
-  const bool are_whole =
-      times.size() >= kMany && step >= kLongest && (times.array() == times.array().round()).all();
-  if (!(step > kLongest) && !are_whole) return "";
-  return "its frames are " + readable(step) +
-         " s apart (median), as where times are milliseconds or numbers of frames; expected "
-         "seconds";
-}
-
 FrameTimes frame_times(const std::string& name, int frames, std::optional<Eigen::VectorXd> known,
                        const SequenceSource& source) {
   if (!known) {
@@ -70,18 +43,24 @@ FrameTimes frame_times(const std::string& name, int frames, std::optional<Eigen:
   return {*std::move(known), true};
 }
 
-void check_times(const std::string& name, const Eigen::VectorXd& times) {
-  for (Eigen::Index frame = 0; frame < times.size(); ++frame) {
-    if (std::isfinite(times[frame]) && (frame == 0 || times[frame] > times[frame - 1])) continue;
-    throw IoError(name, "frame " + std::to_string(frame) + " is at " + readable(times[frame]) +
-                            " s, expected times that rise");
+fs::path other_of_name(const fs::path& sequence) {
+  const fs::path name = beside(sequence, ""), own = sequence.lexically_normal();
+  std::vector<fs::path> others;
+  if (is_there(name / kFolderManifest) && own != name && own != name / "") others.push_back(name);
+  for (const SequenceFormat& format : sequence_formats()) {
+    if (!format.has_companions) continue;
+    for (const std::string& extension : format.extensions) {
+      const fs::path other = name.string() + extension;
+      if (other != own && is_there(other)) others.push_back(other);
+    }
   }
+  return others.empty() ? fs::path() : others.front();
 }
 
 fs::path topology_of(const fs::path& path, const SequenceSource& source) {
   if (source.topology) return *source.topology;
   const fs::path topology = beside(path, kTopologySuffix);
-  if (!stands(topology)) {
+  if (!is_there(topology)) {
     throw IoError(path.string(), "says nothing of faces and there is no " + topology.string() +
                                      "; name a mesh file with option 'topology'");
   }
@@ -91,7 +70,7 @@ fs::path topology_of(const fs::path& path, const SequenceSource& source) {
 std::optional<Positions> rest_beside(const fs::path& sequence, const MeshFileReader& reader,
                                      std::vector<fs::path>& files) {
   const fs::path rest = beside(sequence, kRestSuffix);
-  if (!stands(rest)) return std::nullopt;
+  if (!is_there(rest)) return std::nullopt;
   files.push_back(rest);
   return reader.read(rest);
 }
@@ -99,7 +78,7 @@ std::optional<Positions> rest_beside(const fs::path& sequence, const MeshFileRea
 std::optional<Eigen::VectorXd> times_beside(const fs::path& sequence, int frames,
                                             std::vector<fs::path>& files) {
   const fs::path path = beside(sequence, kTimesSuffix);
-  if (!stands(path)) return std::nullopt;
+  if (!is_there(path)) return std::nullopt;
   CsvReader csv(path);
   if (csv.names() != std::vector<std::string_view>{kTimeColumn}) {
     csv.fail("expected one column, '" + std::string(kTimeColumn) + "'");
@@ -142,7 +121,7 @@ void add_times_beside(PendingOutputs& outputs, const fs::path& sequence,
   }
   std::string text = std::string(kTimeColumn) + '\n';
   for (const double time : header.times) {
-    append_number(text, time, true);
+    append_number(text, time);
     text += '\n';
   }
   write_bytes(outputs.add(target, PendingOutput::Kind::file, PendingOutputs::Existing::same,
@@ -158,6 +137,129 @@ void add_extra_beside(PendingOutputs& outputs, const fs::path& target, const Ext
     write_bytes(outputs.add(path, PendingOutput::Kind::file, existing_beside(name)), content);
     files.push_back(path);
   }
+}
+
+namespace {
+
+std::vector<std::string> match_notes(const fs::path& weights, const fs::path& model,
+                                     const WeightMatch& match) {
+  std::vector<std::string> notes;
+  if (!match.unmatched_columns.empty()) {
+    notes.push_back(weights.string() +
+                    ": columns that drive no expression: " + listed(match.unmatched_columns));
+  }
+  if (!match.undriven_expressions.empty()) {
+    notes.push_back(model.string() +
+                    ": expressions that no column drives: " + listed(match.undriven_expressions));
+  }
+  return notes;
+}
+
+/// One frame with all weights at 0.
+std::shared_ptr<const FrameSource> resting(std::shared_ptr<const BlendshapeModel> model,
+                                           const SequenceSource& source) {
+  selected_frames(source.frames, 1);
+  const int expressions = model->expressions().size();
+  return std::make_shared<const Animation>(std::move(model), Eigen::MatrixXd::Zero(1, expressions));
+}
+
+Eigen::MatrixXd weights_of(const fs::path& path, const WeightTrack& track,
+                           const std::vector<std::string>& expressions) {
+  try {
+    return weights_for(track, expressions);
+  } catch (const MismatchError& error) {
+    throw MismatchError(path.string() + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path& path,
+                   const SequenceSource& source) {
+  if (source.weights) {
+    WeightTrack track = read_weights(*source.weights);
+    note_odd_weights(track, model->expressions().names);
+    return drive(std::move(model), path, source, *source.weights, std::move(track));
+  }
+  return {resting(std::move(model), source), true, {path}, {}};
+}
+
+OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path& path,
+                   const SequenceSource& source, const fs::path& driver, WeightTrack track) {
+  OpenSequence open;
+  open.model_driven = true;
+  open.files = {path, driver};
+  const auto frames = static_cast<int>(track.weights.rows());
+  const std::vector<int> chosen = selected_frames(source.frames, frames);
+  const std::vector<std::string>& expressions = model->expressions().names;
+  if (expressions.empty()) {
+    const std::vector<std::string> unread = notes_on_unread(path);
+    throw MismatchError(driver.string() + ": drives nothing; " +
+                        (unread.empty() ? path.string() + ": has no expressions" : unread[0]));
+  }
+  for (const std::string& note : track.notes) open.notes.push_back(driver.string() + ": " + note);
+  const auto unmatched = match_notes(driver, path, match_weights(track, expressions));
+  open.notes.insert(open.notes.end(), unmatched.begin(), unmatched.end());
+  std::optional<Eigen::VectorXd> of_track;
+  if (track.times.size() > 0) of_track = track.times;
+  FrameTimes times = frame_times(driver.string(), frames, std::move(of_track), source);
+  if (track.times.size() == 0 && track.step != 1) {
+    times.seconds *= track.step;
+    times.are_known = true;
+    if (!source.fps) {
+      open.notes.push_back(driver.string() + ": rows are " + readable(track.step) +
+                           " frames apart, of which " + readable(kDefaultFramesPerSecond) +
+                           " a second are assumed; option 'fps' gives the rate");
+    }
+    const std::string odd = note_on_steps(times.seconds);
+    if (!odd.empty()) open.notes.push_back(driver.string() + ": " + odd);
+  }
+  // There may be many frames: no more than one copy of what is not needed again.
+  if (static_cast<int>(chosen.size()) < frames) {
+    track.weights = Eigen::MatrixXd(track.weights(chosen, Eigen::all));
+  }
+  Eigen::MatrixXd weights = weights_of(driver, track, expressions);
+  track.weights.resize(0, 0);
+  open.frames = std::make_shared<const Animation>(std::move(model), std::move(weights),
+                                                  times.seconds(chosen), times.are_known);
+  return open;
+}
+
+OpenSequence open_scene(const fs::path& path, const SequenceSource& source,
+                        const Context& context) {
+  Scene scene = read_scene(path, context);
+  const auto frames = static_cast<int>(scene.weights.rows());
+  OpenSequence open;
+  if (scene.frames && !source.weights) {
+    check_rate(path.string(), scene.frames->known_times(), source);
+    open.frames = scene.frames;
+    if (source.frames) {
+      open.frames = selected(scene.frames, selected_frames(source.frames, scene.frames->frames()));
+    }
+  } else if (source.weights || frames == 0) {
+    open = drive(scene.model, path, source);
+  } else {
+    const std::vector<int> chosen = selected_frames(source.frames, frames);
+    std::optional<Eigen::VectorXd> of_scene;
+    if (scene.times.size() > 0) of_scene = scene.times;
+    const FrameTimes times = frame_times(path.string(), frames, std::move(of_scene), source);
+    open.model_driven = true;
+    open.frames = std::make_shared<const Animation>(
+        scene.performer, Eigen::MatrixXd(scene.weights(chosen, Eigen::all)), times.seconds(chosen),
+        times.are_known);
+  }
+  if (!scene.rest_is_known && !source.weights) {
+    open.frames = with_rest(open.frames, std::nullopt);
+    open.model_driven = false;
+  }
+  if (scene.z_is_up) open.frames = z_up(open.frames);
+  open.files = scene.files;
+  if (source.weights) open.files.push_back(*source.weights);
+  std::vector<std::string>& notes = scene.notes;
+  const auto& of_use = source.weights ? scene.model_notes : scene.motion_notes;
+  notes.insert(notes.end(), of_use.begin(), of_use.end());
+  open.notes.insert(open.notes.begin(), notes.begin(), notes.end());
+  return open;
 }
 
 }  // namespace mimetra

@@ -1,15 +1,21 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "toolkit/io/frame_series.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/pending_output.h"
-#include "toolkit/io/sequence_options.h"
+#include "toolkit/io/sequence_format.h"
+#include "toolkit/io/weight_track.h"
+#include "toolkit/mesh/context.h"
+#include "toolkit/model/blendshape_model.h"
 
-/// What formats of sequences have in common. Internal to them.
+/// What formats of sequences have in common: what stands beside a file, sequences with a mesh file
+/// for each frame, and models that weights drive. Internal to what opens and writes sequences.
 namespace mimetra {
 
 /// Seconds of the frames of a sequence (F), and whether anybody gave them.
@@ -23,9 +29,9 @@ struct FrameTimes {
 FrameTimes frame_times(const std::string& name, int frames, std::optional<Eigen::VectorXd> known,
                        const SequenceSource& source);
 
-/// Throws IoError that names `name` and the first frame whose time is not finite, or not later than
-/// the one before.
-void check_times(const std::string& name, const Eigen::VectorXd& times);
+/// Another sequence of the name of `sequence`, a part of which is what stands beside that; empty
+/// where there is none.
+std::filesystem::path other_of_name(const std::filesystem::path& sequence);
 
 /// The file with the faces of `path`, which has none itself. Throws IoError where there is none.
 std::filesystem::path topology_of(const std::filesystem::path& path, const SequenceSource& source);
@@ -50,5 +56,32 @@ void add_times_beside(PendingOutputs& outputs, const std::filesystem::path& sequ
                       const SequenceHeader& header, std::vector<std::filesystem::path>& files);
 void add_extra_beside(PendingOutputs& outputs, const std::filesystem::path& target,
                       const ExtraFiles& extra, std::vector<std::filesystem::path>& files);
+
+/// The part of `series` that `source` takes. `folder` is where a rest pose may lie beside, which
+/// comes before the series' own; empty for patterns and single files. Throws IoError,
+/// MismatchError, Cancelled.
+OpenSequence open_frames(const FrameSeries& series, const std::filesystem::path& folder,
+                         const SequenceSource& source, const Context& context = {});
+
+/// A folder of numbered files. Throws OutputError, Cancelled.
+std::unique_ptr<FrameSink> begin_folder(const SequenceHeader& header,
+                                        const std::filesystem::path& target,
+                                        const SequenceWriteOptions& options,
+                                        const ExtraFiles& extra, const Context& context = {});
+
+/// The model that was read from `path`, driven by `source.weights`; without them, its neutral.
+/// Throws IoError; MismatchError where no name of the weights is known.
+OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const std::filesystem::path& path,
+                   const SequenceSource& source);
+
+/// The same driven by a track that was read from `driver`. Throws MismatchError.
+OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const std::filesystem::path& path,
+                   const SequenceSource& source, const std::filesystem::path& driver,
+                   WeightTrack track);
+
+/// A scene's file: driven by `source.weights`, else what it performs, else its neutral. Throws
+/// IoError, MismatchError, Cancelled.
+OpenSequence open_scene(const std::filesystem::path& path, const SequenceSource& source,
+                        const Context& context = {});
 
 }  // namespace mimetra

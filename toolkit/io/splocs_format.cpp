@@ -4,13 +4,13 @@
 
 #include "toolkit/io/hdf5_file.h"
 #include "toolkit/io/hdf5_image.h"
+#include "toolkit/io/mesh_formats.h"
 #include "toolkit/io/point_cache.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/sequence_parts.h"
-#include "toolkit/io/single_precision.h"
-#include "toolkit/mesh/coordinate.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;

@@ -122,7 +122,8 @@ std::vector<double> read_stl_corners(const std::string& path, std::string_view b
                           : read_ascii(path, without_byte_order_mark(bytes), context);
 }
 
-MeshFrame stl_frame(const Connectivity& connectivity, bool, const Context&) {
+MeshFrame stl_frame(const Connectivity& connectivity, const std::vector<Field>&, bool,
+                    const Context&) {
   std::string before(kHeaderBytes, ' ');
   append_little_endian(before, static_cast<std::uint32_t>(connectivity.triangles.rows()));
   return {

@@ -1,6 +1,8 @@
 #include "toolkit/io/text_cursor.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <limits>
 
 #include "toolkit/mesh/errors.h"
@@ -45,7 +47,28 @@ bool is_large(std::string_view digits) {
   return magnitude + power > 0;
 }
 
+/// The shortest digits that read back equal, to where `text` has room for them.
+template <typename Number>
+char* put_shortest(char* text, Number value) {
+  return std::to_chars(text, text + kMostDigits, value).ptr;
+}
+
 }  // namespace
+
+char* put_number(char* text, double value, bool double_precision) {
+  return double_precision ? put_shortest(text, value)
+                          : put_shortest(text, static_cast<float>(value));
+}
+
+void append_number(std::string& text, double value, bool double_precision) {
+  std::array<char, kMostDigits> digits;
+  text.append(digits.data(), put_number(digits.data(), value, double_precision));
+}
+
+void append_integer(std::string& text, long long value) {
+  std::array<char, kMostDigits> digits;
+  text.append(digits.data(), put_shortest(digits.data(), value));
+}
 
 std::string_view without_byte_order_mark(std::string_view text) {
   constexpr std::string_view kMark = "\xEF\xBB\xBF";

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <charconv>
 #include <string>
 #include <string_view>
 
@@ -23,6 +22,16 @@ std::string_view without_padding(std::string_view bytes);
 
 /// Throws IoError for text in UTF-16, which begins with its own mark.
 void check_encoding(const std::string& path, std::string_view text);
+
+/// Characters that the shortest digits of a number take at most: a double has 24, an integer 20.
+inline constexpr std::size_t kMostDigits = 32;
+
+/// Puts the shortest digits that read back equal, as float or as double, to where `text` has room
+/// for kMostDigits; returns where they end.
+char* put_number(char* text, double value, bool double_precision = true);
+/// Append the same.
+void append_number(std::string& text, double value, bool double_precision = true);
+void append_integer(std::string& text, long long value);
 
 /// Walks through the text of a file word by word, within a line or across lines, and knows the line
 /// for messages. Lines end in LF or CRLF. For readers.

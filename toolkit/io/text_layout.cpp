@@ -1,13 +1,11 @@
 #include <charconv>
-#include <cmath>
 #include <cstring>
 #include <utility>
 #include <vector>
 
 #include "toolkit/io/mesh_codecs.h"
-#include "toolkit/io/mesh_layout.h"
 #include "toolkit/io/text_cursor.h"
-#include "toolkit/mesh/coordinate.h"
+#include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
 namespace {

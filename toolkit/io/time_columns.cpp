@@ -1,16 +1,16 @@
 #include "toolkit/io/time_columns.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
-#include <string_view>
 #include <utility>
 
 #include "toolkit/io/frame_series.h"
+#include "toolkit/mesh/median.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
+
 namespace {
 
 constexpr std::array<std::string_view, 6> kNamesOfSeconds = {"time",    "seconds",  "time_s",
@@ -59,6 +59,118 @@ std::string note_on_frame_numbers(const std::string& name) {
   return "'" + name +
          "' is not used, since it does not have a whole number in every frame, each higher than "
          "the one before; without times frames follow each other without a pause";
+}
+
+namespace {
+
+/// Seconds from one timecode to a later one, frames left out.
+int seconds_between(const Timecode& code, const Timecode& next) {
+  const int seconds = next.seconds - code.seconds;
+  return seconds < -kSecondsOfDay / 2 ? seconds + kSecondsOfDay : seconds;
+}
+
+/// Whole frames in a second; none where nothing tells.
+std::optional<int> counted_frames(const std::vector<Timecode>& codes) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < codes.size(); ++i) {
+    if (seconds_between(codes[i - 1], codes[i]) != 0) continue;
+    steps.push_back(codes[i].frames - codes[i - 1].frames);
+  }
+  // Where seconds go on, a usual step takes the frames that are left of one and those of the next.
+  std::vector<double> rates;
+  double most = 0;
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    most = std::max(most, codes[i].frames);
+    if (i == 0 || steps.empty()) continue;
+    if (seconds_between(codes[i - 1], codes[i]) != 1) continue;
+    rates.push_back(codes[i - 1].frames - codes[i].frames + median(steps));
+  }
+  if (rates.empty()) return {};
+  const double found = median(rates);
+  // Frames that were lost, and times that are not regular, leave no more than a tenth of doubt.
+  const int least = static_cast<int>(std::floor(most)) + 1;
+  std::optional<int> nearest;
+  for (const int rate : kUsualRates) {
+    if (rate < least || std::abs(rate - found) > 0.1 * rate) continue;
+    if (!nearest || std::abs(rate - found) < std::abs(*nearest - found)) nearest = rate;
+  }
+  return nearest ? nearest : std::max(least, static_cast<int>(std::lround(found)));
+}
+
+/// Frames since midnight, where the first ones of each minute but every tenth have no number.
+double dropped_count(const Timecode& code, int rate) {
+  const int minutes = code.seconds / 60, tens = minutes / 10, numbers_left_out = rate / 15;
+  return static_cast<double>(code.seconds) * rate + code.frames -
+         numbers_left_out * (minutes - tens);
+}
+
+/// Whether frames go on past a whole minute from the last number to that which drop-frame timecodes
+/// have first, and never to an earlier one. Every tenth minute has all numbers.
+bool skip_numbers(const std::vector<Timecode>& codes, int rate) {
+  if (rate % 30 != 0) return false;
+  const int left_out = rate / 15;
+  bool skip = false;
+  for (std::size_t i = 1; i < codes.size(); ++i) {
+    const Timecode &code = codes[i - 1], &next = codes[i];
+    if (next.seconds % 60 != 0 || next.seconds % 600 == 0) continue;
+    if (next.frames < left_out) return false;
+    const bool is_next = seconds_between(code, next) == 1 && code.frames >= rate - 1;
+    skip = skip || (is_next && next.frames < left_out + 1);
+  }
+  return skip;
+}
+
+}  // namespace
+
+std::optional<Timecode> Timecode::parse(std::string_view text) {
+  constexpr std::array kMost = {24, 60, 60};
+  std::array<int, 3> parts = {};
+  Timecode code{};
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), parts[part]);
+    const auto used = static_cast<std::size_t>(end - text.data());
+    const bool sound = error == std::errc() && parts[part] >= 0 && parts[part] < kMost[part];
+    if (!sound || used >= text.size()) return {};
+    const bool before_frames = part + 1 == parts.size();
+    if (text[used] != ':' && !(before_frames && text[used] == ';')) return {};
+    code.drops_frames = text[used] == ';';
+    text.remove_prefix(used + 1);
+  }
+  code.seconds = (parts[0] * 60 + parts[1]) * 60 + parts[2];
+  constexpr double kMostFrames = 1000;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), code.frames,
+                                            std::chars_format::fixed);
+  const bool sound = error == std::errc() && end == text.data() + text.size() && code.frames >= 0 &&
+                     code.frames < kMostFrames;
+  return sound ? std::optional(code) : std::nullopt;
+}
+
+TimecodeTimes times_of(const std::vector<Timecode>& codes) {
+  TimecodeTimes result;
+  const auto rate = counted_frames(codes);
+  if (!rate) return result;
+  const bool drops = codes.front().drops_frames;
+  // Those whose numbers are left out now and then are as much slower.
+  result.rate = drops ? *rate / 1.001 : *rate;
+  result.skips_numbers = !drops && skip_numbers(codes, *rate);
+  double days = 0;
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    if (i > 0 && codes[i].seconds < codes[i - 1].seconds) days += kSecondsOfDay;
+    if (drops) {
+      const double of_day = dropped_count({kSecondsOfDay, 0}, *rate);
+      const double count = dropped_count(codes[i], *rate) + days / kSecondsOfDay * of_day;
+      result.times.push_back((count - dropped_count(codes.front(), *rate)) / *result.rate);
+    } else {
+      const double seconds = codes[i].seconds + days - codes.front().seconds;
+      result.times.push_back(seconds + (codes[i].frames - codes.front().frames) / *rate);
+    }
+  }
+  return result;
+}
+
+bool passes(const Timecode& code, const Timecode& next) {
+  const int seconds = seconds_between(code, next);
+  return seconds > 0 || (seconds == 0 && next.frames > code.frames);
 }
 
 }  // namespace mimetra

@@ -1,39 +1,33 @@
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <mutex>
 
 #include "toolkit/io/binary_file.h"
-#include "toolkit/io/driven_model.h"
 #include "toolkit/io/frame_files.h"
+#include "toolkit/io/mesh_formats.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/sequence_parts.h"
-#include "toolkit/io/single_precision.h"
+#include "toolkit/io/text_cursor.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/texture.h"
+#include "toolkit/mesh/tri_mesh.h"
 #include "toolkit/model/animation.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-/// The shortest digits that read back equal.
-template <typename Number>
-void append_number(std::string& text, Number number) {
-  std::array<char, 32> digits{};
-  text.append(digits.data(),
-              std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
-}
-
 template <typename Numbers>
 std::string usd_list(const Numbers& numbers) {
   std::string text = "[";
   for (const auto number : numbers) {
     if (text.size() > 1) text += ", ";
-    append_number(text, number);
+    if constexpr (std::is_integral_v<decltype(number)>) {
+      append_integer(text, number);
+    } else {
+      append_number(text, number, false);
+    }
   }
   return text + ']';
 }
@@ -46,7 +40,7 @@ std::string usd_points(const double* xyz, Eigen::Index count) {
     text += point == 0 ? "(" : ", (";
     for (Eigen::Index c = 0; c < 3; ++c) {
       if (c > 0) text += ", ";
-      append_number(text, static_cast<float>(xyz[3 * point + c]));
+      append_number(text, xyz[3 * point + c], false);
     }
     text += ')';
   }
@@ -118,9 +112,9 @@ std::string usd_faces(const Connectivity& faces) {
   text += "    texCoord2f[] primvars:st = [";
   for (std::size_t i = 0; i < texture.coordinates.size(); ++i) {
     text += i == 0 ? "(" : ", (";
-    append_number(text, static_cast<float>(texture.coordinates[i].x()));
+    append_number(text, texture.coordinates[i].x(), false);
     text += ", ";
-    append_number(text, static_cast<float>(texture.coordinates[i].y()));
+    append_number(text, texture.coordinates[i].y(), false);
     text += ')';
   }
   return text +

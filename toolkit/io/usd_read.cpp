@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 
@@ -7,11 +6,9 @@
 #include <Eigen/LU>
 
 #include "toolkit/io/scene.h"
-#include "toolkit/io/sequence_parts.h"
+#include "toolkit/io/sequence_format.h"
 #include "toolkit/io/text_cursor.h"
-#include "toolkit/io/usd_faces.h"
-#include "toolkit/io/usd_skeleton.h"
-#include "toolkit/io/usd_transform.h"
+#include "toolkit/io/usd_prims.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"

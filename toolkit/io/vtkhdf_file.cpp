@@ -5,10 +5,9 @@
 #include <stdexcept>
 
 #include "toolkit/io/hdf5_image.h"
+#include "toolkit/io/mesh_formats.h"
 #include "toolkit/io/point_cache.h"
 #include "toolkit/io/sequence_parts.h"
-#include "toolkit/io/single_precision.h"
-#include "toolkit/mesh/whole_numbers.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;

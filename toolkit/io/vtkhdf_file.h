@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "toolkit/io/sequence_options.h"
+#include "toolkit/io/sequence_format.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/mesh/fields.h"
 

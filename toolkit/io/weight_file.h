@@ -25,11 +25,6 @@ namespace mimetra {
 /// where the expressions are known: note_odd_weights().
 WeightTrack read_weights(const std::filesystem::path& path);
 
-/// Divides weights in percent by 100, and adds what was noticed to the track's notes: that, weights
-/// that nobody means, and times that nobody captures at. Columns that drive none of `expressions`,
-/// such as a head's pose in degrees, have no say and stay.
-void note_odd_weights(WeightTrack& track, const std::vector<std::string>& expressions);
-
 /// Writes `time` and one column per name, the shortest digits that read back equal. Throws
 /// OutputError; std::invalid_argument where names, times and weights differ in number.
 void write_weights(const std::filesystem::path& path, const WeightTrack& track, bool overwrite);

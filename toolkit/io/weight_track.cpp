@@ -1,9 +1,13 @@
 #include "toolkit/io/weight_track.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <map>
 
+#include "toolkit/io/sequence_format.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 #include "toolkit/model/expression_names.h"
 
 namespace mimetra {
@@ -84,6 +88,122 @@ Eigen::MatrixXd weights_for(const WeightTrack& track, const std::vector<std::str
     }
   }
   return weights;
+}
+
+namespace {
+
+std::vector<int> rows_without_weights(const Eigen::MatrixXd& weights) {
+  std::vector<int> rows;
+  for (int row = 0; row < weights.rows(); ++row) {
+    if (weights.row(row).array().isNaN().all()) rows.push_back(row);
+  }
+  return rows;
+}
+
+/// \pre one weight at least is not NaN
+void fill_gaps(const Eigen::VectorXd& times, Eigen::Ref<Eigen::VectorXd> weights) {
+  std::vector<Eigen::Index> seen;
+  for (Eigen::Index f = 0; f < weights.size(); ++f) {
+    if (!std::isnan(weights[f])) seen.push_back(f);
+  }
+  for (Eigen::Index f = 0; f < weights.size(); ++f) {
+    if (!std::isnan(weights[f])) continue;
+    const auto next = std::ranges::lower_bound(seen, f);
+    const Eigen::Index after = next == seen.end() ? seen.back() : *next;
+    const Eigen::Index before = next == seen.begin() ? after : *std::prev(next);
+    const double share =
+        after > before ? (times[f] - times[before]) / (times[after] - times[before]) : 0;
+    weights[f] = (1 - share) * weights[before] + share * weights[after];
+  }
+}
+
+}  // namespace
+
+void fill_missing_weights(WeightTrack& track) {
+  const std::vector<int> lost = rows_without_weights(track.weights);
+  const Eigen::Index rows = track.weights.rows();
+  const Eigen::VectorXd times =
+      track.times.size() > 0 ? track.times
+                             : Eigen::VectorXd::LinSpaced(rows, 0, static_cast<double>(rows - 1));
+  std::vector<std::string> gaps;
+  for (Eigen::Index column = 0; column < track.weights.cols(); ++column) {
+    const auto missing = track.weights.col(column).array().isNaN().count();
+    if (missing > std::ssize(lost)) gaps.push_back(track.names[static_cast<std::size_t>(column)]);
+    if (missing > 0) fill_gaps(times, track.weights.col(column));
+  }
+  if (!lost.empty()) {
+    track.notes.push_back("rows without weights, which are taken from between their neighbours': " +
+                          listed(words_of(lost)));
+  }
+  if (!gaps.empty()) {
+    track.notes.push_back(
+        "columns in which weights are missing, which are taken from between their neighbours': " +
+        listed(gaps));
+  }
+}
+
+namespace {
+
+/// Blendshape weights are 0 to 1, and sometimes a little beyond.
+constexpr double kMostUsual = 2, kLeastUsual = -0.1;
+
+/// Weights that go beyond this and look like percent are nothing else.
+constexpr double kLeastPercent = 10;
+
+/// Whether many weights, in most columns that move, are beyond what weights from 0 to 1 are.
+bool look_like_percent(const Eigen::MatrixXd& weights) {
+  constexpr double kBeyond = 1.5, kMany = 0.05;
+  const auto beyond = static_cast<double>((weights.array() > kBeyond).count());
+  const Eigen::ArrayXd most = weights.colwise().maxCoeff().transpose();
+  const double many = kMany * static_cast<double>(weights.size());
+  const auto below = static_cast<double>((weights.array() < 10 * kLeastUsual).count());
+  return beyond > many && below <= many && 2 * (most > kBeyond).count() > (most > 0).count() &&
+         most.maxCoeff() <= 100 && weights.minCoeff() >= 100 * kLeastUsual;
+}
+
+/// Divides weights in percent by 100; notes that, and weights that nobody means. Only of `columns`.
+void note_sizes(WeightTrack& track, const std::vector<int>& columns) {
+  const Eigen::MatrixXd weights = track.weights(Eigen::all, columns);
+  const auto note = [&](Eigen::Index frame, Eigen::Index column) {
+    return "the weight of '" +
+           track.names[static_cast<std::size_t>(columns[static_cast<std::size_t>(column)])] +
+           "' is " + readable(weights(frame, column)) + " in frame " + std::to_string(frame) +
+           ", expected 0 to 1";
+  };
+  Eigen::Index frame = 0, column = 0;
+  const double most = weights.cwiseAbs().maxCoeff(&frame, &column);
+  if (most <= kMostUsual) {
+    if (weights.minCoeff(&frame, &column) >= kLeastUsual) return;
+    track.notes.push_back(note(frame, column) + "; those below 0 are taken as they are");
+    return;
+  }
+  if (look_like_percent(weights)) {
+    const bool is_percent = most > kLeastPercent;
+    if (is_percent) track.weights(Eigen::all, columns) = weights / 100;
+    track.notes.push_back("weights go up to " + readable(most) +
+                          " and look like percent, expected 0 to 1; " +
+                          (is_percent ? "they are divided by 100"
+                                      : "they are taken as they are: divide them by 100"));
+    return;
+  }
+  track.notes.push_back(note(frame, column));
+}
+
+}  // namespace
+
+void note_odd_times(WeightTrack& track) {
+  const std::string odd = note_on_steps(track.times);
+  if (odd.empty() || std::ranges::find(track.notes, odd) != track.notes.end()) return;
+  track.notes.push_back(odd);
+}
+
+void note_odd_weights(WeightTrack& track, const std::vector<std::string>& expressions) {
+  std::vector<int> driving = match_weights(track, expressions).column;
+  std::erase(driving, -1);
+  std::ranges::sort(driving);
+  driving.erase(std::unique(driving.begin(), driving.end()), driving.end());
+  if (!driving.empty() && track.weights.rows() > 0) note_sizes(track, driving);
+  note_odd_times(track);
 }
 
 }  // namespace mimetra

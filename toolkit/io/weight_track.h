@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -38,5 +39,21 @@ WeightMatch match_weights(const WeightTrack& track, const std::vector<std::strin
 /// Weights in the order of the expressions (F x D), 0 where nothing drives one. Throws
 /// MismatchError where no name is known.
 Eigen::MatrixXd weights_for(const WeightTrack& track, const std::vector<std::string>& expressions);
+
+/// Stands for a weight that is missing.
+inline constexpr double kMissingWeight = std::numeric_limits<double>::quiet_NaN();
+
+/// Weights that are missing, as in rows where a capture lost the face, lie between their
+/// neighbours in time: by the track's times, else by its rows. The first and the last that there
+/// are stay beyond them. Adds notes on the rows and columns. \pre each column has a number
+void fill_missing_weights(WeightTrack& track);
+
+/// Divides weights in percent by 100, and adds what was noticed to the track's notes: that, weights
+/// that nobody means, and times that nobody captures at. Columns that drive none of `expressions`,
+/// such as a head's pose in degrees, have no say and stay.
+void note_odd_weights(WeightTrack& track, const std::vector<std::string>& expressions);
+
+/// Adds to the notes, once, what is odd about times that nobody captures at.
+void note_odd_times(WeightTrack& track);
 
 }  // namespace mimetra

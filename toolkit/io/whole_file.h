@@ -12,4 +12,20 @@ std::string read_file(const std::filesystem::path& path);
 /// Writes `content` to `path` itself, replacing what is there. Not atomic. Throws OutputError.
 void write_bytes(const std::filesystem::path& path, std::string_view content);
 
+/// True where something stands under a name. What cannot even be asked for, such as a name too
+/// long, is not there.
+bool is_there(const std::filesystem::path& path);
+
+/// In normal form, so that "out/" and "out" are one name, whose folder is its parent.
+std::filesystem::path without_trailing_slash(std::filesystem::path path);
+
+/// Throws IoError for a path where nothing is, with the name of a file or folder beside it that is
+/// nearly the same.
+[[noreturn]] void fail_missing(const std::string& path);
+
+/// What a file of a known kind that nothing here reads is, and what to do with it, by its
+/// extension: "an FBX scene; export it as ...". Also of glTF with an extension that nobody knows.
+/// "" for other files.
+std::string foreign_file(const std::filesystem::path& path);
+
 }  // namespace mimetra

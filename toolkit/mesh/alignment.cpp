@@ -15,7 +15,7 @@
 #include "toolkit/mesh/alignment.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/mesh/rounding.h"
 
 namespace mimetra {
 namespace {

@@ -1,14 +1,11 @@
 #include "toolkit/mesh/face_order.h"
 
 #include <algorithm>
-#include <iterator>
 #include <map>
-#include <numeric>
 #include <span>
 #include <utility>
-#include <vector>
 
-#include "toolkit/mesh/outline.h"
+#include "toolkit/mesh/disjoint_sets.h"
 
 namespace mimetra {
 
@@ -110,15 +107,7 @@ std::optional<std::vector<std::vector<int>>> joined_by_inner_edges(const Polygon
                                                                    const std::vector<int>& wholes) {
   const std::vector<PolygonEdge> outer = sorted_edges(coarse, wholes);
   const std::vector<PolygonEdge> edges = sorted_edges(fine, faces);
-  // Links to a face of the same group, those that lead to themselves name one.
-  std::vector<int> link(static_cast<std::size_t>(fine.size()));
-  std::iota(link.begin(), link.end(), 0);
-  const auto name_of = [&link](int face) {
-    while (link[std::size_t(face)] != face) {
-      face = link[std::size_t(face)] = link[std::size_t(link[std::size_t(face)])];
-    }
-    return face;
-  };
+  DisjointSets joined(fine.size());
   for (auto first = edges.begin(); first != edges.end();) {
     const auto last = std::find_if(first, edges.end(), [first](const PolygonEdge& edge) {
       return edge.ends() != first->ends();
@@ -126,15 +115,15 @@ std::optional<std::vector<std::vector<int>>> joined_by_inner_edges(const Polygon
     const bool is_outer = std::ranges::binary_search(outer, first->ends(), {}, &PolygonEdge::ends);
     if (!is_outer) {
       if (last - first != 2 || first->leads_up == (first + 1)->leads_up) return {};
-      link[std::size_t(name_of(first->face))] = name_of((first + 1)->face);
+      joined.join(first->face, (first + 1)->face);
     }
     first = last;
   }
   std::map<int, std::vector<int>> groups;
-  for (const int face : faces) groups[name_of(face)].push_back(face);
+  for (const int face : faces) groups[joined.lowest(face)].push_back(face);
   std::vector<std::vector<int>> parts;
   parts.reserve(groups.size());
-  for (auto& [name, group] : groups) parts.push_back(std::move(group));
+  for (auto& [lowest, group] : groups) parts.push_back(std::move(group));
   return parts;
 }
 
@@ -192,6 +181,34 @@ int nearest_to(const Triangles& triangles, Eigen::Index t, const Polygons& polyg
 }
 
 }  // namespace
+
+std::vector<VertexIndex> outline(const Polygons& polygons, const std::vector<int>& faces) {
+  using Edge = std::pair<VertexIndex, VertexIndex>;
+  std::vector<Edge> edges;
+  for (const int face : faces) {
+    const auto corners = corners_of(polygons, face);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      edges.emplace_back(corners[i], corners[(i + 1) % corners.size()]);
+    }
+  }
+  std::vector<Edge> sorted = edges;
+  std::ranges::sort(sorted);
+  std::map<VertexIndex, VertexIndex> outer;
+  std::vector<VertexIndex> cycle;
+  for (const auto& [from, to] : edges) {
+    if (std::ranges::binary_search(sorted, Edge(to, from))) continue;
+    if (cycle.empty()) cycle.push_back(from);
+    if (!outer.emplace(from, to).second) return {};
+  }
+  while (!outer.empty()) {
+    const auto edge = outer.extract(cycle.back());
+    if (edge.empty()) return {};
+    cycle.push_back(edge.mapped());
+  }
+  if (cycle.empty() || cycle.back() != cycle.front()) return {};
+  cycle.pop_back();
+  return cycle;
+}
 
 std::optional<Connectivity> in_order_of(const Connectivity& reference, const Connectivity& mesh) {
   if (reference.vertices != mesh.vertices) return {};

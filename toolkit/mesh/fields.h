@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -50,6 +52,13 @@ bool has_left_its_rest(const FrameSource& frames);
 /// Has displacements written where the rest pose is read again from them, in place of fields of
 /// their names.
 void show_displacement(FieldSequence& sequence);
+
+/// Whether `Integer` holds all values, rounded to whole numbers; false where one is not finite.
+template <typename Integer>
+bool all_are_held_by(const Eigen::MatrixXd& values) {
+  const double limit = std::ldexp(1.0, std::numeric_limits<Integer>::digits);
+  return (values.array().round() >= -limit && values.array().round() < limit).all();
+}
 
 /// Values of the polygons: the largest of their triangles' (M x c) in each component.
 Eigen::MatrixXd on_polygons(const Eigen::MatrixXd& on_triangles, const Connectivity& connectivity);

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "toolkit/mesh/context.h"
-#include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/measures.h"
 #include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {

@@ -3,18 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "toolkit/mesh/triangle_quality.h"
+#include "toolkit/mesh/measures.h"
 
 namespace mimetra {
-
-/// Connected component of each vertex by shared edges of triangles: labels 0, 1, ... in the order
-/// of each component's lowest vertex. A vertex without triangle is a component of its own.
-struct ConnectedComponents {
-  int count = 0;
-  std::vector<int> of_vertex;
-};
-
-ConnectedComponents connected_components(int vertices, const Triangles& triangles);
 
 /// What a mesh is made of. Indices and counts are those of the mesh as given, before welding.
 struct MeshReport {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -7,9 +10,20 @@
 namespace mimetra {
 
 /// The median of n >= 1 values, none of them NaN: the upper of two in the middle.
-double median(std::vector<double> values);
+inline double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
 
 /// The median of what n >= 2 values differ by from one to the next.
-double median_difference(const Eigen::VectorXd& values);
+inline double median_difference(const Eigen::VectorXd& values) {
+  std::vector<double> differences;
+  differences.reserve(static_cast<std::size_t>(values.size()));
+  for (Eigen::Index i = 1; i < values.size(); ++i) {
+    differences.push_back(values[i] - values[i - 1]);
+  }
+  return median(std::move(differences));
+}
 
 }  // namespace mimetra

@@ -13,8 +13,10 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Core/Utils/PropertyManager.hh>
 
+#include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/fields.h"
-#include "toolkit/mesh/whole_numbers.h"
+#include "toolkit/mesh/surface.h"
+#include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
 
@@ -31,6 +33,16 @@ concept OpenMeshClass = std::derived_from<Mesh, OpenMesh::BaseKernel> &&
 /// elements (call garbage_collection first).
 template <OpenMeshClass Mesh>
 TriMesh from_openmesh(const Mesh& mesh);
+
+/// A mesh of the user's class with the positions, the polygons (the triangles if the class holds
+/// nothing else) and the texture coordinates. These stand on vertices if each vertex has those of
+/// its own number, else on halfedges, 0 at corners without any. Vertices and faces keep their
+/// order, and faces their first corner. Throws MismatchError if halfedges cannot hold the mesh as
+/// it is: the message names a face that has a vertex twice or is wound against its neighbors, or a
+/// vertex where several sheets of faces meet. Throws std::invalid_argument for another number of
+/// positions than of vertices.
+template <OpenMeshClass Mesh>
+Mesh to_openmesh(const TriMesh& mesh);
 
 /// A frame for each mesh, of which all have the faces of the first; `times` as MeshSequence takes
 /// them, and the rest pose is not known. Throws std::invalid_argument that names the first mesh
@@ -120,6 +132,67 @@ TextureCoordinates texture_of(const Mesh& mesh) {
     }
   }
   return texture;
+}
+
+/// Throws MismatchError where the halfedges differ from the mesh that they were made of.
+inline void check_held_by_halfedges(const Surface& surface) {
+  const auto refuse = [](const std::string& what, const std::string& remedy) {
+    throw MismatchError(what + ", which OpenMesh's halfedges cannot hold; " + remedy);
+  };
+  if (!surface.left_out().empty()) {
+    refuse("face " + std::to_string(surface.left_out().front()) + " has a vertex twice",
+           "remove the face");
+  }
+  if (!surface.turned().empty()) {
+    refuse("face " + std::to_string(surface.turned().front()) + " is wound against its neighbors",
+           "wind all faces the same way");
+  }
+  if (surface.copies() > 0) {
+    const VertexIndex vertex = surface.vertex_of(OpenMesh::VertexHandle(surface.vertices()));
+    refuse(std::to_string(surface.copies_of(vertex).size()) + " sheets of faces meet at vertex " +
+               std::to_string(vertex),
+           "give each sheet a vertex of its own");
+  }
+}
+
+/// Index of the texture coordinates that a polygon has at a vertex; -1 for none.
+inline int texture_at(const Connectivity& connectivity, int polygon, VertexIndex vertex) {
+  const Polygons& polygons = connectivity.polygons;
+  if (connectivity.texture.corners.empty()) return -1;
+  const auto face = static_cast<std::size_t>(polygon);
+  const auto first = polygons.corners.begin() + polygons.offsets[face];
+  const auto corner =
+      std::find(first, polygons.corners.begin() + polygons.offsets[face + 1], vertex);
+  return connectivity.texture.corners[static_cast<std::size_t>(corner - polygons.corners.begin())];
+}
+
+/// Also sets texture coordinates that the class has and the mesh does not: OpenMesh leaves them
+/// undefined.
+template <OpenMeshClass Mesh>
+void write_texture(Mesh& mesh, const Connectivity& connectivity) {
+  const std::vector<Eigen::Vector2d>& coordinates = connectivity.texture.coordinates;
+  const bool on_vertices = is_textured_by_vertex(connectivity);
+  if (on_vertices) mesh.request_vertex_texcoords2D();
+  if (!on_vertices && !coordinates.empty()) mesh.request_halfedge_texcoords2D();
+  const auto at = [&coordinates](int index) {
+    using Scalar = typename Mesh::TexCoord2D::value_type;
+    const Eigen::Vector2d uv = index < 0 ? Eigen::Vector2d(0, 0) : coordinates[std::size_t(index)];
+    return typename Mesh::TexCoord2D(static_cast<Scalar>(uv[0]), static_cast<Scalar>(uv[1]));
+  };
+  if (mesh.has_vertex_texcoords2D()) {
+    for (const auto vertex : mesh.vertices()) {
+      mesh.set_texcoord2D(vertex, at(on_vertices ? vertex.idx() : -1));
+    }
+  }
+  if (!mesh.has_halfedge_texcoords2D()) return;
+  for (const auto halfedge : mesh.halfedges()) {
+    const int face = halfedge.face().idx();
+    const int polygon = face < 0 || !Mesh::is_triangles()
+                            ? face
+                            : connectivity.polygon_of_triangle[static_cast<std::size_t>(face)];
+    mesh.set_texcoord2D(halfedge,
+                        at(face < 0 ? -1 : texture_at(connectivity, polygon, halfedge.to().idx())));
+  }
 }
 
 /// Numbers of a property of this type, a row for each element; none where there is no such one.
@@ -235,6 +308,24 @@ TriMesh from_openmesh(const Mesh& mesh) {
   result.connectivity = Connectivity::from_polygons(static_cast<int>(mesh.n_vertices()),
                                                     openmesh_bridge::polygons_of(mesh));
   result.connectivity.texture = openmesh_bridge::texture_of(mesh);
+  return result;
+}
+
+template <OpenMeshClass Mesh>
+Mesh to_openmesh(const TriMesh& mesh) {
+  const Connectivity& connectivity = mesh.connectivity;
+  const Surface surface = Mesh::is_triangles()
+                              ? Surface(connectivity.vertices, connectivity.triangles)
+                              : Surface(connectivity.vertices, connectivity.polygons);
+  openmesh_bridge::check_held_by_halfedges(surface);
+  Mesh result;
+  result.assign_connectivity(surface.half_edges());
+  for (const auto face : result.faces()) {
+    // As after add_face(), which lets it point to the first corner.
+    result.set_halfedge_handle(face, result.prev_halfedge_handle(face.halfedge()));
+  }
+  set_positions(result, mesh.positions);
+  openmesh_bridge::write_texture(result, connectivity);
   return result;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -8,13 +9,61 @@
 #include <type_traits>
 #include <vector>
 
-#include "toolkit/mesh/choice.h"
-#include "toolkit/mesh/length.h"
-
 /// Options of algorithms, declared once: a struct of options lists the members that its users set,
 /// each with the values it takes. The algorithm checks them by that list, and parameters of
 /// commands and dialogs take default, range and unit from it.
 namespace mimetra {
+
+/// An enum that counts from 0, with `choice_name` beside it: the name of each value, and an empty
+/// one for any other number. It is a switch without a default, so that the compiler names a value
+/// without a name.
+template <typename Enum>
+concept NamedChoice = std::is_enum_v<Enum> && requires(Enum value) {
+  { choice_name(value) } -> std::same_as<std::string_view>;
+};
+
+/// Every value, in the order of the enum.
+template <NamedChoice Enum>
+std::vector<Enum> choices() {
+  std::vector<Enum> values;
+  for (int i = 0; !choice_name(static_cast<Enum>(i)).empty(); ++i) {
+    values.push_back(static_cast<Enum>(i));
+  }
+  return values;
+}
+
+/// Their names.
+template <NamedChoice Enum>
+std::vector<std::string> choice_names() {
+  std::vector<std::string> names;
+  for (const Enum value : choices<Enum>()) names.emplace_back(choice_name(value));
+  return names;
+}
+
+/// The value of a name; none where no value has it.
+template <NamedChoice Enum>
+std::optional<Enum> choice_of(std::string_view name) {
+  for (const Enum value : choices<Enum>()) {
+    if (choice_name(value) == name) return value;
+  }
+  return {};
+}
+
+/// A length that may depend on the mesh: a share of its diameter, up to kLargestShare, or in the
+/// unit of its file.
+struct Length {
+  double value = 0;  ///< >= 0
+  bool absolute = false;
+
+  /// A share that is larger is a length whose unit was forgotten.
+  static constexpr double kLargestShare = 1;
+
+  static constexpr Length share(double of_diameter) { return {of_diameter, false}; }
+  static constexpr Length of(double length) { return {length, true}; }
+
+  /// In the unit of a mesh of this diameter().
+  constexpr double in(double diameter) const { return absolute ? value : value * diameter; }
+};
 
 /// The numbers that an option takes, both ends included; open where there is no end.
 struct Range {

@@ -1,7 +1,6 @@
 #include "toolkit/mesh/pose_decimation.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -59,27 +58,25 @@ struct Quadric {
   double at(const Vector& x) const { return x.dot(a * x) + 2 * b.dot(x) + c; }
 };
 
-std::vector<Quadric> quadrics_of(const Positions& pose, const geodesic::GluedSurface& surface) {
+std::vector<Quadric> quadrics_of(const Positions& pose, const Surface& surface) {
   std::vector<Quadric> quadrics(static_cast<std::size_t>(pose.rows()));
-  const auto at = [&quadrics](VertexIndex v) -> Quadric& {
-    return quadrics[static_cast<std::size_t>(v)];
+  const auto place = [&pose](OpenMesh::VertexHandle v) -> Vector { return pose.row(v.idx()); };
+  const auto at = [&quadrics](OpenMesh::VertexHandle v) -> Quadric& {
+    return quadrics[static_cast<std::size_t>(v.idx())];
   };
-  for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) {
-    const auto corners = surface.triangles.row(t);
-    const std::array<Vector, 3> p = {pose.row(corners[0]), pose.row(corners[1]),
-                                     pose.row(corners[2])};
-    const Vector normal = (p[1] - p[0]).cross(p[2] - p[0]);
+  for (const auto face : surface.half_edges().faces()) {
+    const auto first = face.halfedge();
+    const Vector a = place(first.from());
+    const Vector normal = (place(first.to()) - a).cross(place(first.prev().from()) - a);
     const double area = normal.norm() / 2;
     if (area == 0) continue;
-    for (int c = 0; c < 3; ++c) at(corners[c]).add_plane(normal / (2 * area), p[0], area);
-    for (int c = 0; c < 3; ++c) {
-      if (surface.twin[static_cast<std::size_t>(3 * t + c)] >= 0) continue;
-      const int next = (c + 1) % 3;
-      const Vector edge = p[static_cast<std::size_t>(next)] - p[static_cast<std::size_t>(c)];
+    for (const auto h : face.halfedges()) at(h.from()).add_plane(normal / (2 * area), a, area);
+    for (const auto h : face.halfedges()) {
+      if (!h.edge().is_boundary()) continue;
+      const Vector edge = place(h.to()) - place(h.from());
       const Vector across = edge.cross(normal).normalized();
-      for (const int end : {c, next}) {
-        at(corners[end])
-            .add_plane(across, p[static_cast<std::size_t>(c)], kBorder * edge.squaredNorm());
+      for (const auto end : {h.from(), h.to()}) {
+        at(end).add_plane(across, place(h.from()), kBorder * edge.squaredNorm());
       }
     }
   }
@@ -94,10 +91,10 @@ class PoseModule : public OpenMesh::Decimater::ModBaseT<MeshT> {
 
   explicit PoseModule(MeshT& mesh) : Base(mesh, false) {}
 
-  void start(const DecimationPoses& poses, const geodesic::GluedSurface& surface) {
+  void start(const DecimationPoses& poses, const Surface& surface) {
     poses_ = poses.positions.size();
     planes_ = static_cast<std::size_t>(poses.planes);
-    const std::size_t vertices = surface.vertex.size();
+    const std::size_t vertices = surface.half_edges().n_vertices();
     positions_.resize(vertices * poses_);
     normals_.resize(vertices * poses_);
     quadrics_.resize(vertices * planes_);
@@ -216,12 +213,20 @@ double agreement(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen
   return lengths > 0 ? normal.dot(normals) / lengths : -1;
 }
 
-CollapsedSurface collapsed(const geodesic::GluedSurface& surface, const DecimationPoses& poses,
+CollapsedSurface collapsed(const Surface& surface, const DecimationPoses& poses,
                            const std::vector<bool>& locked, std::size_t collapses,
                            const Context& context) {
-  Mesh mesh = geodesic::mesh_of<Mesh>(surface, poses.positions.front());
+  // OpenMesh 9 mixes up properties if it copies a status, and TriConnectivity's own function would
+  // triangulate deleted faces. Points are not needed: the poses have them.
+  Surface::HalfEdges half_edges = surface.half_edges();
+  half_edges.release_face_status();
+  Mesh mesh;
+  mesh.OpenMesh::PolyConnectivity::assign_connectivity(half_edges);
   mesh.request_halfedge_status();
   OpenMesh::Decimater::DecimaterT<Mesh> decimater(mesh);
+  for (const int face : surface.left_out()) {
+    mesh.status(OpenMesh::FaceHandle(face)).set_deleted(true);
+  }
   for (const auto v : mesh.vertices()) {
     mesh.status(v).set_locked(locked[std::size_t(v.idx())] || mesh.valence(v) > kMostEdges);
   }
@@ -234,15 +239,8 @@ CollapsedSurface collapsed(const geodesic::GluedSurface& surface, const Decimati
   if (collapses > 0) decimater.decimate(collapses);
 
   CollapsedSurface result;
-  result.kept.resize(surface.vertex.size());
-  for (std::size_t v = 0; v < result.kept.size(); ++v) {
-    result.kept[v] = !mesh.status(OpenMesh::VertexHandle(int(v))).deleted();
-  }
-  for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) {
-    if (!mesh.status(OpenMesh::FaceHandle(int(t))).deleted()) {
-      result.triangles.push_back(static_cast<int>(t));
-    }
-  }
+  for (const auto v : mesh.all_vertices()) result.kept.push_back(!mesh.status(v).deleted());
+  for (const auto face : mesh.faces()) result.triangles.push_back(face.idx());
   result.corners.resize(static_cast<Eigen::Index>(result.triangles.size()), 3);
   for (std::size_t i = 0; i < result.triangles.size(); ++i) {
     int corner = 0;

@@ -2,9 +2,8 @@
 
 #include <vector>
 
-#include "geodesic/glued_surface.h"
 #include "toolkit/mesh/context.h"
-#include "toolkit/mesh/tri_mesh.h"
+#include "toolkit/mesh/surface.h"
 
 /// Half-edge collapses that look at several poses of a surface. Internal to simplification.h.
 namespace mimetra {
@@ -31,8 +30,9 @@ struct CollapsedSurface {
   Triangles corners;           ///< of these, in the surface's vertices
 };
 
-/// After so many collapses, or as many as there can be; `locked` vertices stay. Throws Cancelled.
-CollapsedSurface collapsed(const geodesic::GluedSurface& surface, const DecimationPoses& poses,
+/// After so many collapses, or as many as there can be; `locked` vertices stay. All of these are
+/// vertices of the surface's half-edges. Throws Cancelled.
+CollapsedSurface collapsed(const Surface& surface, const DecimationPoses& poses,
                            const std::vector<bool>& locked, std::size_t collapses,
                            const Context& context);
 

@@ -8,8 +8,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "toolkit/mesh/measures.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/mesh/triangle_quality.h"
 
 namespace mimetra {
 namespace {

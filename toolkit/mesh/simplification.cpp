@@ -7,9 +7,9 @@
 #include <numeric>
 #include <set>
 
-#include "geodesic/glued_surface.h"
 #include "toolkit/mesh/normals.h"
 #include "toolkit/mesh/pose_decimation.h"
+#include "toolkit/mesh/surface.h"
 #include "toolkit/mesh/weld.h"
 
 namespace mimetra {
@@ -24,40 +24,26 @@ constexpr int kSamples = 500;
 /// Frames in which triangles fold are looked at in the next round.
 constexpr int kRounds = 3, kFoldedPoses = 4;
 
-/// Triangles with three different corners.
-std::vector<int> sound_triangles(const Triangles& triangles) {
-  std::vector<int> sound;
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    const auto c = triangles.row(t);
-    if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0]) sound.push_back(static_cast<int>(t));
-  }
-  return sound;
-}
-
-/// The surface that half-edges can hold, each of whose vertices stands for one of the input.
-struct Surface {
-  geodesic::GluedSurface glued;
-  /// Triangle of the input behind each.
-  std::vector<int> triangle;
+/// The surface that collapses work on, and its half-edges in tables.
+struct Sheets {
+  Surface surface;
+  /// The given vertex behind each of the surface's.
+  std::vector<VertexIndex> given;
+  /// Corners of each triangle, M x 3, in the surface's vertices; as given if it is left out.
+  Triangles triangles;
 };
 
-Surface surface_of(const Connectivity& mesh) {
-  Surface surface;
-  surface.triangle = sound_triangles(mesh.triangles);
-  std::vector<VertexIndex> used, number(static_cast<std::size_t>(mesh.vertices), -1);
-  const Triangles sound = mesh.triangles(surface.triangle, Eigen::all);
-  for (const VertexIndex v : sound.reshaped()) number[static_cast<std::size_t>(v)] = 0;
-  for (VertexIndex v = 0; v < mesh.vertices; ++v) {
-    VertexIndex& own = number[static_cast<std::size_t>(v)];
-    if (own < 0) continue;
-    own = static_cast<VertexIndex>(used.size());
-    used.push_back(v);
+Sheets sheets_of(const Connectivity& mesh) {
+  Sheets sheets{{mesh.vertices, mesh.triangles}, {}, mesh.triangles};
+  const Surface::HalfEdges& half_edges = sheets.surface.half_edges();
+  for (const auto v : half_edges.vertices()) sheets.given.push_back(sheets.surface.vertex_of(v));
+  for (const auto face : half_edges.faces()) {
+    int corner = 0;
+    for (const auto h : half_edges.fh_range(face)) {
+      sheets.triangles(face.idx(), corner++) = h.from().idx();
+    }
   }
-  const Triangles compact =
-      sound.unaryExpr([&number](VertexIndex v) { return number[static_cast<std::size_t>(v)]; });
-  surface.glued = geodesic::glued(static_cast<Eigen::Index>(used.size()), compact);
-  for (VertexIndex& v : surface.glued.vertex) v = used[static_cast<std::size_t>(v)];
-  return surface;
+  return sheets;
 }
 
 /// Charts of a texture: polygons that have the same coordinates at a vertex, and all that hang
@@ -113,22 +99,24 @@ TextureCharts charts_of(const Connectivity& mesh) {
 std::vector<bool> locked_vertices(const FrameSource& sequence, const Surface& surface,
                                   const TextureCharts& charts) {
   const auto count = static_cast<std::size_t>(sequence.vertices());
-  std::vector<int> times(count, 0), at_place(count, 0);
-  for (const VertexIndex v : surface.glued.vertex) ++times[static_cast<std::size_t>(v)];
+  std::vector<int> at_place(count, 0);
   const Weld weld = Weld::exact(sequence.rest());
   for (const VertexIndex v : weld.representative) ++at_place[static_cast<std::size_t>(v)];
   std::vector<bool> locked(count);
   for (std::size_t v = 0; v < count; ++v) {
     const auto place = static_cast<std::size_t>(weld.representative[v]);
-    locked[v] = times[v] != 1 || at_place[place] > 1 || charts.of_vertex[v].size() > 1;
+    const auto vertex = static_cast<VertexIndex>(v);
+    locked[v] = surface.half_edges().is_isolated(OpenMesh::VertexHandle(vertex)) ||
+                surface.copies_of(vertex).size() > 1 || at_place[place] > 1 ||
+                charts.of_vertex[v].size() > 1;
   }
   return locked;
 }
 
 /// A frame's vertices that stand for the surface's, times `scale`.
-Positions on_surface(const PositionsView& pose, const Surface& surface, const Vector& middle,
+Positions on_surface(const PositionsView& pose, const Sheets& sheets, const Vector& middle,
                      double scale) {
-  Positions result = pose(surface.glued.vertex, Eigen::all);
+  Positions result = pose(sheets.given, Eigen::all);
   result.rowwise() -= middle.transpose();
   return result * scale;
 }
@@ -169,13 +157,13 @@ struct Folds {
   std::vector<bool> triangle;  ///< each of `corners`
 };
 
-Folds folds_of(const FrameSource& sequence, const Surface& surface, const CollapsedSurface& mesh,
+Folds folds_of(const FrameSource& sequence, const Sheets& sheets, const CollapsedSurface& mesh,
                const Context& context) {
   std::vector<int> made;
   for (Eigen::Index i = 0; i < mesh.corners.rows(); ++i) {
     auto before = std::array<int, 3>{}, after = std::array<int, 3>{};
     for (int c = 0; c < 3; ++c) {
-      before[std::size_t(c)] = surface.glued.triangles(mesh.triangles[std::size_t(i)], c);
+      before[std::size_t(c)] = sheets.triangles(mesh.triangles[std::size_t(i)], c);
       after[std::size_t(c)] = mesh.corners(i, c);
     }
     std::ranges::sort(before);
@@ -190,10 +178,9 @@ Folds folds_of(const FrameSource& sequence, const Surface& surface, const Collap
       [&](int first, const Frames& poses) {
         for (Eigen::Index row = 0; row < poses.rows(); ++row) {
           const Positions pose =
-              on_surface(PositionsView(poses.row(row).data(), sequence.vertices(), 3), surface,
+              on_surface(PositionsView(poses.row(row).data(), sequence.vertices(), 3), sheets,
                          Vector::Zero(), 1);
-          const Positions normals =
-              vertex_normals(pose, surface.glued.triangles).rowwise().normalized();
+          const Positions normals = vertex_normals(pose, sheets.triangles).rowwise().normalized();
           for (const int i : made) {
             const auto is_turned = [&](const auto& c) {
               const Vector around = normals.row(c[0]) + normals.row(c[1]) + normals.row(c[2]);
@@ -201,7 +188,7 @@ Folds folds_of(const FrameSource& sequence, const Surface& surface, const Collap
             };
             if (!is_turned(mesh.corners.row(i))) continue;
             // The given triangle that it was may be so, too: an eyelid that closes.
-            if (is_turned(surface.glued.triangles.row(mesh.triangles[std::size_t(i)]))) continue;
+            if (is_turned(sheets.triangles.row(mesh.triangles[std::size_t(i)]))) continue;
             folded[static_cast<std::size_t>(first + row)].push_back(i);
           }
         }
@@ -229,14 +216,14 @@ std::vector<int> worst_frames(const std::vector<int>& folds) {
 }
 
 /// Locks the surface's vertices around the corners of folded triangles.
-void keep_around(const Folds& folds, const CollapsedSurface& mesh, const Surface& surface,
+void keep_around(const Folds& folds, const CollapsedSurface& mesh, const Sheets& sheets,
                  std::vector<bool>& locked) {
   std::vector<bool> near(locked.size(), false);
   for (Eigen::Index i = 0; i < mesh.corners.rows(); ++i) {
     if (!folds.triangle[std::size_t(i)]) continue;
     for (const int v : mesh.corners.row(i)) near[std::size_t(v)] = true;
   }
-  for (const auto& t : surface.glued.triangles.rowwise()) {
+  for (const auto& t : sheets.triangles.rowwise()) {
     if (!near[std::size_t(t[0])] && !near[std::size_t(t[1])] && !near[std::size_t(t[2])]) continue;
     for (const int v : t) locked[std::size_t(v)] = true;
   }
@@ -245,20 +232,25 @@ void keep_around(const Folds& folds, const CollapsedSurface& mesh, const Surface
 /// Makes the connectivity of what is left of a mesh.
 class Remaining {
  public:
-  Remaining(const Connectivity& mesh, const Surface& surface, const CollapsedSurface& left,
+  Remaining(const Connectivity& mesh, const Sheets& sheets, const CollapsedSurface& left,
             const TextureCharts& charts)
-      : mesh_(mesh), surface_(surface), left_(left), charts_(charts) {}
+      : mesh_(mesh),
+        left_(left),
+        charts_(charts),
+        corners_(left.corners.unaryExpr(
+            [&sheets](VertexIndex v) { return sheets.given[std::size_t(v)]; })) {
+    for (std::size_t i = 0; i < left.triangles.size(); ++i) {
+      if (std::ranges::binary_search(sheets.surface.turned(), left.triangles[i])) {
+        corners_.row(Eigen::Index(i)).reverseInPlace();
+      }
+    }
+  }
 
   /// Vertices of the input that are kept, ascending.
   std::vector<VertexIndex> vertices() const {
-    std::vector<bool> kept(static_cast<std::size_t>(mesh_.vertices), true);
-    for (const VertexIndex v : surface_.glued.vertex) kept[std::size_t(v)] = false;
-    for (std::size_t v = 0; v < left_.kept.size(); ++v) {
-      if (left_.kept[v]) kept[std::size_t(surface_.glued.vertex[v])] = true;
-    }
     std::vector<VertexIndex> vertices;
     for (VertexIndex v = 0; v < mesh_.vertices; ++v) {
-      if (kept[std::size_t(v)]) vertices.push_back(v);
+      if (left_.kept[std::size_t(v)]) vertices.push_back(v);
     }
     return vertices;
   }
@@ -268,12 +260,9 @@ class Remaining {
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       number[std::size_t(vertices[i])] = static_cast<VertexIndex>(i);
     }
-    Triangles triangles = left_.corners.unaryExpr(
-        [&](VertexIndex v) { return number[std::size_t(surface_.glued.vertex[std::size_t(v)])]; });
-    for (std::size_t i = 0; i < left_.triangles.size(); ++i) {
-      if (is_turned(i)) triangles.row(Eigen::Index(i)).reverseInPlace();
-    }
-    Connectivity made = Connectivity::from_triangles(static_cast<int>(vertices.size()), triangles);
+    Connectivity made = Connectivity::from_triangles(
+        static_cast<int>(vertices.size()),
+        corners_.unaryExpr([&number](VertexIndex v) { return number[std::size_t(v)]; }));
     made.materials = mesh_.materials;
     add_texture(made);
     add_groups(made);
@@ -281,19 +270,8 @@ class Remaining {
   }
 
  private:
-  int given_triangle(std::size_t i) const {
-    return surface_.triangle[std::size_t(left_.triangles[i])];
-  }
-
-  /// Whether the surface has the given triangle the other way round, to glue it to its neighbours.
-  bool is_turned(std::size_t i) const {
-    const auto given = mesh_.triangles.row(given_triangle(i));
-    const auto glued = surface_.glued.triangles.row(left_.triangles[i]);
-    const auto at = [&](int c) { return surface_.glued.vertex[std::size_t(glued[c])]; };
-    for (int c = 0; c < 3; ++c) {
-      if (at(c) == given[0]) return at((c + 1) % 3) != given[1];
-    }
-    return false;
+  int polygon(std::size_t i) const {
+    return mesh_.polygon_of_triangle[std::size_t(left_.triangles[i])];
   }
 
   /// Coordinates of the vertex in the polygon's chart: its own where it is a corner; where the
@@ -326,11 +304,8 @@ class Remaining {
     if (mesh_.texture.coordinates.empty()) return;
     std::map<int, int> number;
     for (std::size_t i = 0; i < left_.triangles.size(); ++i) {
-      const int polygon = mesh_.polygon_of_triangle[std::size_t(given_triangle(i))];
-      for (int c = 0; c < 3; ++c) {
-        const VertexIndex v =
-            surface_.glued.vertex[std::size_t(left_.corners(static_cast<Eigen::Index>(i), c))];
-        const int given = texture_at(v, polygon);
+      for (const VertexIndex v : corners_.row(static_cast<Eigen::Index>(i))) {
+        const int given = texture_at(v, polygon(i));
         const auto [place, is_new] =
             number.try_emplace(given, int(made.texture.coordinates.size()));
         if (given < 0) place->second = -1;
@@ -346,18 +321,15 @@ class Remaining {
   void add_groups(Connectivity& made) const {
     std::size_t face = 0;
     for (const FaceGroup& group : mesh_.groups) {
-      while (face < left_.triangles.size() &&
-             mesh_.polygon_of_triangle[std::size_t(given_triangle(face))] < group.first_face) {
-        ++face;
-      }
+      while (face < left_.triangles.size() && polygon(face) < group.first_face) ++face;
       made.groups.push_back({static_cast<int>(face), group.statement});
     }
   }
 
   const Connectivity& mesh_;
-  const Surface& surface_;
   const CollapsedSurface& left_;
   const TextureCharts& charts_;
+  Triangles corners_;  // of the triangles that are left, in given vertices, wound as given
 };
 
 }  // namespace
@@ -365,16 +337,16 @@ class Remaining {
 Simplification simplify(const FrameSource& sequence, const SimplifyOptions& options,
                         const Context& context) {
   check_options(options);
-  const Surface surface = surface_of(sequence.connectivity());
+  const Sheets sheets = sheets_of(sequence.connectivity());
   const TextureCharts charts = charts_of(sequence.connectivity());
-  const std::vector<bool> locked = locked_vertices(sequence, surface, charts);
-  std::vector<bool> on_glued;
-  for (const VertexIndex v : surface.glued.vertex) on_glued.push_back(locked[std::size_t(v)]);
+  const std::vector<bool> locked = locked_vertices(sequence, sheets.surface, charts);
+  std::vector<bool> staying;
+  for (const VertexIndex v : sheets.given) staying.push_back(locked[std::size_t(v)]);
   const Vector middle = sequence.rest().colwise().mean();
   const double size = sequence.diameter(), scale = size > 0 ? 1 / size : 1;
   DecimationPoses poses;
   const auto add = [&](const PositionsView& pose) {
-    poses.add(on_surface(pose, surface, middle, scale), surface.glued.triangles);
+    poses.add(on_surface(pose, sheets, middle, scale), sheets.triangles);
   };
   add(PositionsView(sequence.rest().data(), sequence.vertices(), 3));
   for (const int frame : extreme_frames(sequence, context.part(0, 0.1))) {
@@ -387,16 +359,16 @@ Simplification simplify(const FrameSource& sequence, const SimplifyOptions& opti
   Folds folds;
   for (int round = 0; round < kRounds; ++round) {
     const double from = 0.1 + 0.9 * round / kRounds;
-    left = collapsed(surface.glued, poses, on_glued, collapses,
+    left = collapsed(sheets.surface, poses, staying, collapses,
                      context.part(from, from + 0.5 / kRounds));
     folds =
-        folds_of(sequence, surface, left, context.part(from + 0.5 / kRounds, from + 0.9 / kRounds));
+        folds_of(sequence, sheets, left, context.part(from + 0.5 / kRounds, from + 0.9 / kRounds));
     const std::vector<int> frames = worst_frames(folds.in_frame);
     if (frames.empty()) break;
-    keep_around(folds, left, surface, on_glued);
+    keep_around(folds, left, sheets, staying);
     for (const int frame : frames) add(FrameBlock(sequence, frame, 1).frame(0));
   }
-  const Remaining remaining(sequence.connectivity(), surface, left, charts);
+  const Remaining remaining(sequence.connectivity(), sheets, left, charts);
   Simplification result;
   result.vertices = remaining.vertices();
   result.connectivity = remaining.connectivity(result.vertices);

@@ -1,16 +1,18 @@
 #include "toolkit/mesh/subdivision.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "toolkit/mesh/weld.h"
+#include "toolkit/mesh/surface.h"
 
 namespace mimetra {
 namespace {
@@ -22,27 +24,28 @@ Edge edge_of(VertexIndex a, VertexIndex b) {
   return std::minmax(a, b);
 }
 
-/// The edges of triangles on representatives, and what lies around them.
+/// Triangles on representatives, and what lies around their edges.
 struct Surroundings {
-  /// Corners opposite to each edge.
-  std::map<Edge, std::vector<VertexIndex>> opposite;
-  /// Neighbours of each vertex, and those of them that a border leads to, ascending.
-  std::vector<std::vector<VertexIndex>> neighbors, along_border;
+  Surface surface;
+  /// Corners opposite to each edge that two triangles share.
+  std::map<Edge, std::array<VertexIndex, 2>> opposite;
+  /// Neighbours of each vertex that a border leads to, ascending.
+  std::vector<std::vector<VertexIndex>> along_border;
 
-  explicit Surroundings(const Triangles& triangles, int vertices)
-      : neighbors(static_cast<std::size_t>(vertices)), along_border(neighbors.size()) {
-    for (const auto& t : triangles.rowwise()) {
-      for (int c = 0; c < 3; ++c) {
-        const VertexIndex a = t[c], b = t[(c + 1) % 3];
-        if (a != b) opposite[edge_of(a, b)].push_back(t[(c + 2) % 3]);
+  Surroundings(int vertices, const Triangles& triangles)
+      : surface(vertices, triangles), along_border(static_cast<std::size_t>(vertices)) {
+    const auto corner = [&triangles](int side, int ahead) {
+      return triangles(side / 3, (side + ahead) % 3);
+    };
+    surface.for_each_edge([&](std::span<const int> sides) {
+      const Edge edge = edge_of(corner(sides[0], 0), corner(sides[0], 1));
+      if (sides.size() == 2) {
+        opposite[edge] = {corner(sides[0], 2), corner(sides[1], 2)};
+      } else {
+        along_border[static_cast<std::size_t>(edge.first)].push_back(edge.second);
+        along_border[static_cast<std::size_t>(edge.second)].push_back(edge.first);
       }
-    }
-    for (const auto& [edge, across] : opposite) {
-      for (const auto& [from, to] : {edge, Edge(edge.second, edge.first)}) {
-        neighbors[static_cast<std::size_t>(from)].push_back(to);
-        if (across.size() != 2) along_border[static_cast<std::size_t>(from)].push_back(to);
-      }
-    }
+    });
   }
 };
 
@@ -77,7 +80,7 @@ double loop_weight(std::size_t neighbors) {
 /// Where a given vertex goes.
 WeightRows::Row moved_vertex(VertexIndex vertex, const Surroundings& around,
                              SubdivisionScheme scheme) {
-  const auto& neighbors = around.neighbors[static_cast<std::size_t>(vertex)];
+  const std::vector<VertexIndex> neighbors = around.surface.neighbors(vertex);
   const auto& border = around.along_border[static_cast<std::size_t>(vertex)];
   // Where borders meet, and without a triangle, it stays.
   if (scheme == SubdivisionScheme::midpoint || neighbors.empty() ||
@@ -94,8 +97,7 @@ WeightRows::Row moved_vertex(VertexIndex vertex, const Surroundings& around,
 /// Where the new vertex of an edge lies.
 WeightRows::Row middle_of(const Edge& edge, const Surroundings& around, SubdivisionScheme scheme) {
   const auto across = around.opposite.find(edge);
-  if (scheme == SubdivisionScheme::midpoint || across == around.opposite.end() ||
-      across->second.size() != 2) {
+  if (scheme == SubdivisionScheme::midpoint || across == around.opposite.end()) {
     return {{edge.first, 0.5}, {edge.second, 0.5}};
   }
   return {{edge.first, 3.0 / 8},
@@ -181,7 +183,7 @@ std::vector<FaceGroup> finer_groups(const Connectivity& mesh) {
 Subdivision subdivided_once(const Positions& rest, const Connectivity& mesh,
                             SubdivisionScheme scheme) {
   const Weld weld = Weld::exact(rest);
-  const Surroundings around(weld.welded(mesh.triangles), mesh.vertices);
+  const Surroundings around(mesh.vertices, weld.welded(mesh.triangles));
   const auto place = [&weld](VertexIndex v) {
     return weld.representative[static_cast<std::size_t>(v)];
   };

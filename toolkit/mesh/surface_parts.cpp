@@ -1,15 +1,71 @@
 #include "toolkit/mesh/surface_parts.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
-#include <Eigen/Geometry>
-
-#include "toolkit/mesh/inspection.h"
+#include "toolkit/mesh/disjoint_sets.h"
+#include "toolkit/mesh/measures.h"
+#include "toolkit/mesh/surface.h"
 
 namespace mimetra {
+namespace {
+
+using RimEdge = std::pair<VertexIndex, VertexIndex>;
+
+/// Edges of one triangle, by their lower vertex first.
+std::vector<RimEdge> boundary_edges(int vertices, const Triangles& welded) {
+  std::vector<RimEdge> edges;
+  Surface(vertices, welded).for_each_edge([&](std::span<const int> sides) {
+    if (sides.size() != 1) return;
+    const int t = sides[0] / 3, c = sides[0] % 3;
+    edges.emplace_back(std::minmax({welded(t, c), welded(t, (c + 1) % 3)}));
+  });
+  return edges;
+}
+
+struct Boundary {
+  std::vector<VertexIndex> vertices;
+  double length = 0;
+};
+
+/// Boundaries by their lowest vertex.
+std::map<VertexIndex, Boundary> boundaries_of(const Positions& positions,
+                                              const std::vector<RimEdge>& edges) {
+  DisjointSets joined(static_cast<int>(positions.rows()));
+  for (const auto& [low, high] : edges) joined.join(low, high);
+  std::map<VertexIndex, Boundary> boundaries;
+  std::vector<bool> is_listed(positions.rows(), false);
+  for (const RimEdge& edge : edges) {
+    Boundary& boundary = boundaries[joined.lowest(edge.first)];
+    boundary.length += (positions.row(edge.first) - positions.row(edge.second)).norm();
+    for (const VertexIndex v : {edge.first, edge.second}) {
+      if (!is_listed[v]) boundary.vertices.push_back(v);
+      is_listed[v] = true;
+    }
+  }
+  return boundaries;
+}
+
+/// The diameter of each connected part.
+std::vector<double> diameters_of(const Positions& positions, const SurfaceParts& parts) {
+  std::vector<std::vector<Eigen::Index>> members(parts.count());
+  for (std::size_t v = 0; v < parts.of_vertex.size(); ++v) {
+    members[parts.of_vertex[v]].push_back(static_cast<Eigen::Index>(v));
+  }
+  std::vector<double> diameters;
+  diameters.reserve(members.size());
+  for (const auto& vertices : members) {
+    diameters.push_back(diameter(positions(vertices, Eigen::all)));
+  }
+  return diameters;
+}
+
+}  // namespace
 
 double SurfaceParts::area() const {
   return std::accumulate(areas.begin(), areas.end(), 0.0);
@@ -27,21 +83,12 @@ SurfaceParts surface_parts(const Positions& positions, const Triangles& triangle
     throw std::invalid_argument("a weld of " + std::to_string(weld.representative.size()) +
                                 " vertices, expected " + std::to_string(vertices));
   }
-  const ConnectedComponents connected = connected_components(vertices, weld.welded(triangles));
+  const ConnectedComponents connected = connected_components(triangles, weld);
   const Eigen::VectorXd of_vertices = vertex_areas(positions, triangles);
-  std::vector<int> of_vertex(vertices);
   std::vector<double> areas(connected.count, 0);
-  for (VertexIndex v = 0; v < vertices; ++v) {
-    of_vertex[v] = connected.of_vertex[weld.representative[v]];
-    areas[of_vertex[v]] += of_vertices[v];
-  }
-  // A welded vertex leaves a label of its own behind, of which nothing is.
-  std::vector<bool> used(connected.count, false);
-  for (const int label : of_vertex) used[label] = true;
-  std::vector<int> order;
-  for (int label = 0; label < connected.count; ++label) {
-    if (used[label]) order.push_back(label);
-  }
+  for (VertexIndex v = 0; v < vertices; ++v) areas[connected.of_vertex[v]] += of_vertices[v];
+  std::vector<int> order(connected.count);
+  std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, [&](int a, int b) { return areas[a] > areas[b]; });
   SurfaceParts parts;
   std::vector<int> rank(connected.count, -1);
@@ -49,7 +96,7 @@ SurfaceParts surface_parts(const Positions& positions, const Triangles& triangle
     rank[label] = parts.count();
     parts.areas.push_back(areas[label]);
   }
-  for (const int label : of_vertex) parts.of_vertex.push_back(rank[label]);
+  for (const int label : connected.of_vertex) parts.of_vertex.push_back(rank[label]);
   return parts;
 }
 
@@ -99,15 +146,32 @@ double diameter_of_parts(const Positions& positions, const Triangles& triangles,
   return size >= (1 - kRounding) * whole ? whole : size;
 }
 
-Eigen::VectorXd vertex_areas(const Positions& positions, const Triangles& triangles) {
-  Eigen::VectorXd areas = Eigen::VectorXd::Zero(positions.rows());
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    const Eigen::Vector3d a = positions.row(triangles(t, 0)), b = positions.row(triangles(t, 1)),
-                          c = positions.row(triangles(t, 2));
-    const double third = (b - a).cross(c - a).norm() / 6;
-    for (int corner = 0; corner < 3; ++corner) areas[triangles(t, corner)] += third;
+std::vector<bool> near_rims(const Positions& positions, const Triangles& triangles,
+                            const Weld& weld) {
+  const SurfaceParts parts = surface_parts(positions, triangles, weld);
+  const Triangles welded = weld.welded(triangles);
+  const std::map<VertexIndex, Boundary> boundaries =
+      boundaries_of(positions, boundary_edges(static_cast<int>(positions.rows()), welded));
+  std::vector<const Boundary*> longest(parts.count(), nullptr);
+  for (const auto& [lowest, boundary] : boundaries) {
+    const Boundary*& most = longest[parts.of_vertex[lowest]];
+    if (!most || boundary.length > most->length) most = &boundary;
   }
-  return areas;
+  const std::vector<double> diameters = diameters_of(positions, parts);
+  std::vector<bool> is_rim(positions.rows(), false), is_near = is_rim;
+  for (int part = 0; part < parts.count(); ++part) {
+    if (!longest[part]) continue;
+    const std::vector<VertexIndex>& vertices = longest[part]->vertices;
+    if (diameter(positions(vertices, Eigen::all)) < kRimShare * diameters[part]) continue;
+    for (const VertexIndex v : vertices) is_rim[v] = true;
+  }
+  for (int t = 0; t < welded.rows(); ++t) {
+    const auto corners = welded.row(t);
+    if (std::ranges::none_of(corners, [&](VertexIndex v) { return is_rim[v]; })) continue;
+    for (const VertexIndex v : corners) is_near[v] = true;
+  }
+  for (std::size_t v = 0; v < is_near.size(); ++v) is_near[v] = is_near[weld.representative[v]];
+  return is_near;
 }
 
 }  // namespace mimetra

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <iterator>
+#include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -49,9 +51,26 @@ bool same_face(const Polygons& a, const Polygons& b, int face) {
                              corners);
 }
 
-Eigen::Vector3d box_sides(const Eigen::Ref<const Positions>& positions) {
-  if (positions.rows() == 0) return Eigen::Vector3d::Zero();
-  return (positions.colwise().maxCoeff() - positions.colwise().minCoeff()).transpose();
+using Words = std::vector<std::string>;
+
+/// The keywords of a kind. Each has a state of its own: `o` does not end what `g` began.
+std::vector<std::string_view> keywords(FaceGroupKind kind) {
+  if (kind == FaceGroupKind::material) return {"usemtl"};
+  return {"g", "o"};
+}
+
+/// What stands after the keyword: groups are words; a material is one name, spaces and all.
+Words names_in(const std::string& statement, const std::string& keyword, FaceGroupKind kind) {
+  std::istringstream rest(statement.substr(keyword.size()));
+  Words words{std::istream_iterator<std::string>(rest), {}};
+  if (kind == FaceGroupKind::group || words.empty()) return words;
+  return {statement.substr(keyword.size() + 1)};
+}
+
+void add_face(std::vector<NamedFaces>& named, const std::string& name, int face) {
+  auto found = std::ranges::find(named, name, &NamedFaces::name);
+  if (found == named.end()) found = named.insert(found, {name, {}});
+  if (found->faces.empty() || found->faces.back() != face) found->faces.push_back(face);
 }
 
 }  // namespace
@@ -109,12 +128,62 @@ std::vector<VertexIndex> used_vertices(const Triangles& triangles, Eigen::Index 
   return used;
 }
 
-double extent(const Eigen::Ref<const Positions>& positions) {
-  return box_sides(positions).maxCoeff();
+bool has_texture(const Connectivity& connectivity) {
+  const TextureCoordinates& texture = connectivity.texture;
+  return !texture.coordinates.empty() &&
+         std::ranges::any_of(texture.corners, [](int coordinates) { return coordinates >= 0; });
 }
 
-double box_diagonal(const Eigen::Ref<const Positions>& positions) {
-  return box_sides(positions).norm();
+bool is_textured_by_vertex(const Connectivity& connectivity) {
+  const TextureCoordinates& texture = connectivity.texture;
+  return static_cast<int>(texture.coordinates.size()) == connectivity.vertices &&
+         texture.corners == connectivity.polygons.corners;
+}
+
+std::optional<std::vector<Eigen::Vector2d>> texture_of_vertices(const Connectivity& connectivity) {
+  const TextureCoordinates& texture = connectivity.texture;
+  if (!has_texture(connectivity)) return std::nullopt;
+  const auto vertices = static_cast<std::size_t>(connectivity.vertices);
+  std::vector<Eigen::Vector2d> of_vertices(vertices, Eigen::Vector2d::Zero());
+  std::vector<char> is_known(vertices, 0);
+  for (std::size_t corner = 0; corner < texture.corners.size(); ++corner) {
+    if (texture.corners[corner] < 0) continue;
+    const auto vertex = static_cast<std::size_t>(connectivity.polygons.corners[corner]);
+    const Eigen::Vector2d& found =
+        texture.coordinates[static_cast<std::size_t>(texture.corners[corner])];
+    if (is_known[vertex] && of_vertices[vertex] != found) return std::nullopt;
+    of_vertices[vertex] = found;
+    is_known[vertex] = 1;
+  }
+  return of_vertices;
+}
+
+std::vector<NamedFaces> named_faces(const Connectivity& connectivity, FaceGroupKind kind) {
+  const std::vector<std::string_view> known = keywords(kind);
+  std::vector<Words> current(known.size());
+  std::vector<NamedFaces> named;
+  auto group = connectivity.groups.begin();
+  for (int face = 0; face < connectivity.polygons.size(); ++face) {
+    for (; group != connectivity.groups.end() && group->first_face <= face; ++group) {
+      const std::string keyword = group->statement.substr(0, group->statement.find(' '));
+      const auto place = std::ranges::find(known, keyword);
+      if (place == known.end()) continue;
+      current[place - known.begin()] = names_in(group->statement, keyword, kind);
+    }
+    for (const Words& names : current) {
+      for (const std::string& name : names) add_face(named, name, face);
+    }
+  }
+  return named;
+}
+
+Eigen::Index first_unusable(const Positions& positions) {
+  for (Eigen::Index v = 0; v < positions.rows(); ++v) {
+    for (const double value : positions.row(v)) {
+      if (!is_coordinate(value)) return v;
+    }
+  }
+  return -1;
 }
 
 }  // namespace mimetra

@@ -1,18 +1,15 @@
 #pragma once
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "geodesic/types.h"
+#include "toolkit/mesh/types.h"
 
 namespace mimetra {
-
-using geodesic::Positions;
-using geodesic::PositionsView;
-using geodesic::Triangles;
-using geodesic::VertexIndex;
 
 /// Polygons of any size, one after the other: face i has the corners
 /// corners[offsets[i]] .. corners[offsets[i + 1] - 1], 0-based vertex indices.
@@ -88,10 +85,41 @@ struct TriMesh {
   Connectivity connectivity;
 };
 
-/// Longest side of the bounding box; 0 for no positions.
-double extent(const Eigen::Ref<const Positions>& positions);
+/// Whether any corner of a face has texture coordinates.
+bool has_texture(const Connectivity& connectivity);
 
-/// Diagonal of the bounding box; 0 for no positions.
-double box_diagonal(const Eigen::Ref<const Positions>& positions);
+/// Whether each vertex has the texture coordinates of its own number, at every corner.
+bool is_textured_by_vertex(const Connectivity& connectivity);
+
+/// The texture coordinates of each vertex (N), where all corners at a vertex have equal ones;
+/// vertices at no such corner have 0. None where a vertex has several, as at the seams of a
+/// texture, or the mesh has no texture coordinates.
+std::optional<std::vector<Eigen::Vector2d>> texture_of_vertices(const Connectivity& connectivity);
+
+/// What the statements of an OBJ file say of the faces after them.
+enum class FaceGroupKind {
+  group,    ///< `g` and `o`: each face is in all groups that the last statement of either names
+  material  ///< `usemtl`
+};
+
+/// Faces that a file has a name for.
+struct NamedFaces {
+  std::string name;
+  std::vector<int> faces;  ///< polygons, ascending
+};
+
+/// The groups or materials of a mesh that have faces, in the order of their first face.
+std::vector<NamedFaces> named_faces(const Connectivity& connectivity, FaceGroupKind kind);
+
+/// Readers refuse coordinates from this size on (8.7e99): their cubes would not be finite.
+constexpr double kCoordinateLimit = 0x1p332;
+
+/// False for numbers of that size, infinity, and what is not a number.
+inline bool is_coordinate(double value) {
+  return std::abs(value) < kCoordinateLimit;
+}
+
+/// The first row of positions with a number that is no coordinate; -1 if there is none.
+Eigen::Index first_unusable(const Positions& positions);
 
 }  // namespace mimetra

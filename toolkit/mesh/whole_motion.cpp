@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "toolkit/mesh/alignment.h"
-#include "toolkit/mesh/triangle_quality.h"
+#include "toolkit/mesh/measures.h"
 
 namespace mimetra {
 namespace {

@@ -3,9 +3,23 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace mimetra {
+
 namespace {
+
+/// Of so many frames of a model, with times or without.
+SequenceHeader header_at(const BlendshapeModel& model, Eigen::Index frames, Eigen::VectorXd times,
+                         bool times_are_known) {
+  times_are_known = times_are_known && times.size() > 0;
+  if (times.size() == 0) times = default_times(static_cast<int>(frames));
+  if (times.size() != frames) {
+    throw std::invalid_argument(std::to_string(times.size()) + " times for " +
+                                std::to_string(frames) + " frames");
+  }
+  return {model.shared_connectivity(), std::move(times), model.neutral(), true, times_are_known};
+}
 
 SequenceHeader header_of(const BlendshapeModel& model, const Eigen::MatrixXd& weights,
                          Eigen::VectorXd times, bool times_are_known) {
@@ -13,13 +27,22 @@ SequenceHeader header_of(const BlendshapeModel& model, const Eigen::MatrixXd& we
     throw std::invalid_argument(std::to_string(weights.cols()) + " weights for a model of " +
                                 std::to_string(model.expressions().size()) + " expressions");
   }
-  times_are_known = times_are_known && times.size() > 0;
-  if (times.size() == 0) times = default_times(static_cast<int>(weights.rows()));
-  if (times.size() != weights.rows()) {
-    throw std::invalid_argument(std::to_string(times.size()) + " times for " +
-                                std::to_string(weights.rows()) + " frames");
+  return header_at(model, weights.rows(), std::move(times), times_are_known);
+}
+
+SequenceHeader header_of(const BlendshapeModel& model, const RegionShares& shares,
+                         const Eigen::MatrixXd& weights, Eigen::VectorXd times,
+                         bool times_are_known) {
+  if (shares.rows() != model.vertices()) {
+    throw std::invalid_argument("shares of " + std::to_string(shares.rows()) +
+                                " vertices for a model of " + std::to_string(model.vertices()));
   }
-  return {model.shared_connectivity(), std::move(times), model.neutral(), true, times_are_known};
+  if (weights.cols() != shares.cols() * model.expressions().size()) {
+    throw std::invalid_argument(std::to_string(weights.cols()) + " weights for " +
+                                std::to_string(shares.cols()) + " regions and " +
+                                std::to_string(model.expressions().size()) + " expressions");
+  }
+  return header_at(model, weights.rows(), std::move(times), times_are_known);
 }
 
 }  // namespace
@@ -97,6 +120,40 @@ std::shared_ptr<const FrameSource> z_up(std::shared_ptr<const FrameSource> sourc
   const auto* animation = dynamic_cast<const Animation*>(source.get());
   if (!animation) return with_z_up(std::move(source));
   return std::make_shared<const Animation>(animation->z_up());
+}
+
+RegionalAnimation::RegionalAnimation(std::shared_ptr<const BlendshapeModel> model,
+                                     const RegionShares& shares, Eigen::MatrixXd weights,
+                                     Eigen::VectorXd times, bool times_are_known)
+    : FrameSource(header_of(*model, shares, weights, std::move(times), times_are_known)),
+      model_(std::move(model)),
+      shares_(shares),
+      weights_(std::move(weights)) {}
+
+void RegionalAnimation::read_frames(int first, FramesView poses) const {
+  const Eigen::MatrixXd& fields = model_->expressions().displacements;
+  const Eigen::Index D = fields.cols();
+  const auto neutral = model_->neutral().reshaped<Eigen::RowMajor>();
+  for (Eigen::Index row = 0; row < poses.rows(); ++row) {
+    poses.row(row) = neutral.transpose();
+    // Each number is added up in one order, expression by expression and region by region, so that
+    // any run of frames gives the same.
+    Eigen::VectorXd at_vertex(model_->vertices());
+    for (Eigen::Index j = 0; j < D; ++j) {
+      at_vertex.setZero();
+      for (Eigen::Index r = 0; r < shares_.cols(); ++r) {
+        const double weight = weights_(first + row, r * D + j);
+        if (weight == 0) continue;
+        for (RegionShares::InnerIterator share(shares_, r); share; ++share) {
+          at_vertex[share.index()] += weight * share.value();
+        }
+      }
+      for (Eigen::Index v = 0; v < at_vertex.size(); ++v) {
+        if (at_vertex[v] == 0) continue;
+        for (int c = 0; c < 3; ++c) poses(row, 3 * v + c) += at_vertex[v] * fields(3 * v + c, j);
+      }
+    }
+  }
 }
 
 }  // namespace mimetra

@@ -8,6 +8,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
+#include "toolkit/mesh/rounding.h"
+
 namespace mimetra {
 
 namespace {
@@ -179,6 +181,109 @@ double box_optimality_violation(const Eigen::MatrixXd& gram, const Eigen::Vector
         {violation, wrong_up / scale, wrong_down / scale, lower[j] - x[j], x[j] - upper[j]});
   }
   return violation;
+}
+
+namespace {
+
+/// Well conditioned problems take three to six passes; exchanging whole blocks can go round in
+/// circles, which is given up after so many.
+constexpr int kMostPasses = 40;
+
+/// Rounding of an unknown in units of the box, and of a multiplier in units of its terms.
+constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
+
+class BlockExchange {
+ public:
+  BlockExchange(const Eigen::MatrixXd& gram, const Eigen::VectorXd& h, const Eigen::VectorXd& lower,
+                const Eigen::VectorXd& upper, const Eigen::VectorXd& start)
+      : gram_(gram),
+        h_(h),
+        lower_(lower),
+        upper_(upper),
+        scale_(gram.lpNorm<Eigen::Infinity>()),
+        x_(start.size() > 0 ? start.cwiseMax(lower).cwiseMin(upper).eval() : lower),
+        sides_(h.size(), Side::lower) {
+    for (Eigen::Index j = 0; j < h.size(); ++j) {
+      if (x_[j] > lower[j]) sides_[j] = x_[j] < upper[j] ? Side::free : Side::upper;
+    }
+  }
+
+  /// False where the passes do not end, or the system is not definite.
+  bool solve() {
+    for (int pass = 0; pass < kMostPasses; ++pass) {
+      if (!solve_for_free()) return false;
+      if (!exchange()) {
+        x_ = x_.cwiseMax(lower_).cwiseMin(upper_);
+        return true;
+      }
+    }
+    return false;
+  }
+  const Eigen::VectorXd& x() const { return x_; }
+
+ private:
+  /// The minimum over the free unknowns, wherever it is, the others at their bounds.
+  bool solve_for_free() {
+    free_.clear();
+    for (Eigen::Index j = 0; j < x_.size(); ++j) {
+      if (sides_[j] == Side::free) free_.push_back(j);
+      if (sides_[j] == Side::free) x_[j] = 0;
+      if (sides_[j] == Side::lower) x_[j] = lower_[j];
+      if (sides_[j] == Side::upper) x_[j] = upper_[j];
+    }
+    if (free_.empty()) return true;
+    const Eigen::VectorXd right = (h_ - gram_ * x_)(free_);
+    const Eigen::LLT<Eigen::MatrixXd> factor(gram_(free_, free_));
+    if (factor.info() != Eigen::Success) return false;
+    const Eigen::VectorXd minimum = factor.solve(right);
+    x_(free_) = minimum;
+    return x_.allFinite();
+  }
+
+  /// Sends unknowns that left the box to the bound they crossed, and frees those whose multiplier
+  /// pulls inwards. False where there are none: x is the solution.
+  bool exchange() {
+    const Eigen::VectorXd pull = h_ - gram_ * x_;
+    const double tolerance =
+        kRounding * (h_.lpNorm<Eigen::Infinity>() + scale_ * x_.lpNorm<Eigen::Infinity>());
+    bool exchanged = false;
+    for (Eigen::Index j = 0; j < x_.size(); ++j) {
+      const double room = kRounding * (upper_[j] - lower_[j]);
+      Side side = sides_[j];
+      if (side == Side::free) {
+        if (x_[j] < lower_[j] - room) side = Side::lower;
+        if (x_[j] > upper_[j] + room) side = Side::upper;
+      } else if (lower_[j] < upper_[j]) {
+        const double inwards = side == Side::lower ? pull[j] : -pull[j];
+        if (inwards > tolerance) side = Side::free;
+      }
+      exchanged = exchanged || side != sides_[j];
+      sides_[j] = side;
+    }
+    return exchanged;
+  }
+
+  const Eigen::MatrixXd& gram_;
+  const Eigen::VectorXd& h_;
+  const Eigen::VectorXd& lower_;
+  const Eigen::VectorXd& upper_;
+  double scale_;
+  Eigen::VectorXd x_;
+  std::vector<Side> sides_;
+  std::vector<Eigen::Index> free_;
+};
+
+}  // namespace
+
+Eigen::VectorXd block_pivoting(const Eigen::MatrixXd& gram, const Eigen::VectorXd& h,
+                               const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
+                               const Eigen::VectorXd& start) {
+  check(gram, h, lower, upper, start);
+  fix_product_blocking();
+  BlockExchange exchange(gram, h, lower, upper, start);
+  if (exchange.solve()) return exchange.x();
+  const Eigen::VectorXd from = exchange.x().allFinite() ? exchange.x() : start;
+  return box_least_squares(gram, h, lower, upper, from);
 }
 
 }  // namespace mimetra

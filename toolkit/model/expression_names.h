@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "toolkit/mesh/choice.h"
+#include "toolkit/mesh/option.h"
 
 /// What the names of expressions tell: ARKit's, and others that end like them.
 namespace mimetra {

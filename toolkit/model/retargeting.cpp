@@ -8,7 +8,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
-#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/mesh/rounding.h"
 
 namespace mimetra {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/mesh/rounding.h"
 #include "toolkit/model/box_least_squares.h"
 #include "toolkit/model/smooth_weights.h"
 

@@ -6,11 +6,6 @@
 
 namespace mimetra {
 
-/// Weight mu = (smoothness * frame rate)^4 * mean_diagonal of squared second differences, with the
-/// frame rate of the median time step. `smoothness` and `times` in seconds; `mean_diagonal` is
-/// trace(G) / D. Throws std::invalid_argument where the median time step is not positive.
-double smoothness_penalty(double smoothness, const Eigen::VectorXd& times, double mean_diagonal);
-
 /// Bounds of weights over time, F x D each, lower <= upper; where they are equal the weight is
 /// given. Empty for 0 and 1.
 struct WeightBounds {

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/suggestion.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {

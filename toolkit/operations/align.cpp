@@ -3,18 +3,17 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/json_text.h"
 #include "toolkit/mesh/alignment.h"
 #include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/mesh/whole_motion.h"
 #include "toolkit/operations/bound_parameters.h"
-#include "toolkit/operations/formats.h"
-#include "toolkit/operations/json.h"
-#include "toolkit/operations/lost_expressions.h"
 #include "toolkit/operations/parameter_files.h"
+#include "toolkit/operations/reports.h"
 #include "toolkit/operations/toolkit_operations.h"
-#include "toolkit/pipeline/memory.h"
+#include "toolkit/pipeline/measure.h"
 
 namespace mimetra {
 
@@ -28,17 +27,6 @@ Json json_of(const RigidTransform& transform) {
   const Eigen::Vector3d& translation = transform.translation;
   return {{"rotation", rotation},
           {"translation", {translation[0], translation[1], translation[2]}}};
-}
-
-/// The report with the motion, whose text is a few times smaller than the values it is made of.
-std::string report_with(const Json& report, const std::vector<RigidTransform>& motion) {
-  std::string text = json_text(report);
-  text.back() = ',';
-  text += "\"motion\":[";
-  for (const RigidTransform& transform : motion) text += json_text(json_of(transform)) + ',';
-  if (!motion.empty()) text.pop_back();
-  text += "]}";
-  return text;
 }
 
 struct AlignCall {
@@ -183,7 +171,9 @@ Outcome run_align(const Invocation& invocation) {
     }
   }
   Outcome outcome;
-  outcome.report = report_with(report, result.motion);
+  outcome.report = report_with(report, "motion", result.motion.size(), [&result](std::size_t f) {
+    return json_text(json_of(result.motion[f]));
+  });
   outcome.summary = "largest rotation " + readable(degrees) + " degrees, largest translation " +
                     readable(shift) + '\n';
   const auto& given = std::get<FieldSequence>(input.data);

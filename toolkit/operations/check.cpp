@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/correspondence/renumbering.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/inspection.h"
@@ -10,9 +11,8 @@
 #include "toolkit/mesh/text.h"
 #include "toolkit/mesh/whole_motion.h"
 #include "toolkit/operations/bound_parameters.h"
-#include "toolkit/operations/command_terms.h"
-#include "toolkit/operations/counted.h"
-#include "toolkit/operations/json.h"
+#include "toolkit/operations/option_words.h"
+#include "toolkit/operations/reports.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/splocs/decomposition_options.h"
 

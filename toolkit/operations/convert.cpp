@@ -2,22 +2,19 @@
 
 #include <nlohmann/json.hpp>
 
-#include "toolkit/correspondence/renumbered_frames.h"
+#include "toolkit/correspondence/renumbering.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/io/mesh_formats.h"
 #include "toolkit/io/scene.h"
-#include "toolkit/mesh/face_groups.h"
 #include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/mesh/tri_mesh.h"
 #include "toolkit/model/animation.h"
 #include "toolkit/operations/bound_parameters.h"
-#include "toolkit/operations/counted.h"
-#include "toolkit/operations/formats.h"
-#include "toolkit/operations/json.h"
-#include "toolkit/operations/lost_expressions.h"
-#include "toolkit/operations/times_text.h"
+#include "toolkit/operations/reports.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/operations/weight_tables.h"
-#include "toolkit/pipeline/memory.h"
+#include "toolkit/pipeline/measure.h"
 
 namespace mimetra {
 

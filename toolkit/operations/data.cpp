@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/csv.h"
-#include "toolkit/operations/json.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/operations/parameter.h"
 
 namespace mimetra {
@@ -36,6 +36,10 @@ std::string_view kind_name(DataKind kind) {
 
 DataKind kind_of(const Data& data) {
   return static_cast<DataKind>(data.index());
+}
+
+const BlendshapeModel& person_of(const NamedData& value) {
+  return std::get<ModelData>(value.data).model.average();
 }
 
 Pictures Pictures::of(Image image) {

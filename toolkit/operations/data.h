@@ -13,10 +13,9 @@
 #include "toolkit/io/fit_file.h"
 #include "toolkit/io/weight_track.h"
 #include "toolkit/mesh/fields.h"
+#include "toolkit/model/blendshape_model.h"
 #include "toolkit/model/landmark_track.h"
-#include "toolkit/model/morphable_model.h"
 #include "toolkit/operations/image.h"
-#include "toolkit/operations/image_sequence.h"
 #include "toolkit/regions/regions.h"
 #include "toolkit/splocs/decomposition.h"
 
@@ -127,5 +126,8 @@ struct NamedData {
   /// out without a word elsewhere.
   std::vector<Field> more_fields = {};
 };
+
+/// The one person, or the average, of a value that is a model.
+const BlendshapeModel& person_of(const NamedData& value);
 
 }  // namespace mimetra

@@ -2,14 +2,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/json_text.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/command_terms.h"
-#include "toolkit/operations/convergence_report.h"
-#include "toolkit/operations/counted.h"
-#include "toolkit/operations/json.h"
-#include "toolkit/operations/measures.h"
+#include "toolkit/operations/option_words.h"
 #include "toolkit/operations/pipeline_parameters.h"
+#include "toolkit/operations/reports.h"
 #include "toolkit/operations/toolkit_operations.h"
+#include "toolkit/operations/weight_tables.h"
 
 namespace mimetra {
 
@@ -32,16 +31,11 @@ const BoundParameters<DecomposeCall>& decompose_parameters() {
 
 /// Each component's weight over time.
 Table weight_table(const Components& components, const Eigen::VectorXd& times) {
-  Table table;
-  table.columns = {"time"};
+  WeightTrack track{{}, components.weights, times};
   for (int k = 0; k < components.count(); ++k) {
-    table.columns.push_back("component_" + std::to_string(k));
+    track.names.push_back("component_" + std::to_string(k));
   }
-  for (int f = 0; f < components.weights.rows(); ++f) {
-    table.rows.push_back({times[f]});
-    for (const double weight : components.weights.row(f)) table.rows.back().push_back(weight);
-  }
-  return table;
+  return weight_table(track);
 }
 
 /// A sequence as far as it was decomposed: vertices that are not `inside` stay at rest.

@@ -2,18 +2,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/json_text.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/command_terms.h"
-#include "toolkit/operations/evaluation_table.h"
-#include "toolkit/operations/json.h"
 #include "toolkit/operations/match_parameters.h"
-#include "toolkit/operations/measures.h"
+#include "toolkit/operations/option_words.h"
 #include "toolkit/operations/paint_parameter.h"
 #include "toolkit/operations/pipeline_parameters.h"
-#include "toolkit/operations/selection_parameters.h"
-#include "toolkit/operations/times_text.h"
+#include "toolkit/operations/reports.h"
 #include "toolkit/operations/toolkit_operations.h"
-#include "toolkit/pipeline/memory.h"
+#include "toolkit/pipeline/measure.h"
 
 namespace mimetra {
 

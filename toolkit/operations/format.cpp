@@ -3,11 +3,15 @@
 #include <algorithm>
 
 #include "toolkit/io/material_library.h"
+#include "toolkit/io/pending_output.h"
+#include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
 
 namespace {
+
+using Paths = std::vector<std::filesystem::path>;
 
 std::string word_of(const std::string& extension) {
   if (extension == Format::kFolder) return "a folder";
@@ -72,6 +76,32 @@ std::vector<std::string> notes_on_losses(const Format& format, const Data& data,
     notes.insert(notes.end(), materials.notes.begin(), materials.notes.end());
   }
   return notes;
+}
+
+Paths write_with_extra(const WriteRequest& request, const std::function<Paths()>& write) {
+  // The parents that the request's target needs are made first and go last where it fails.
+  PendingOutputs extra(request.overwrite, request.inputs, request.together);
+  Paths beside;
+  for (const auto& [name, content] : request.extra) {
+    beside.push_back(request.target.parent_path() / name);
+    write_bytes(extra.add(beside.back(), PendingOutput::Kind::file, existing_beside(name)),
+                content);
+  }
+  Paths written = write();
+  extra.commit();
+  written.insert(written.end(), beside.begin(), beside.end());
+  return written;
+}
+
+Paths write_text(const WriteRequest& request, const std::string& text) {
+  return write_with_extra(request, [&]() -> Paths {
+    write_file(request.target, text, request.overwrite, request.together);
+    return {request.target};
+  });
+}
+
+Paths write_document(const Data& document, const WriteRequest& request, const Context&) {
+  return write_text(request, std::get<Document>(document).text);
 }
 
 }  // namespace mimetra

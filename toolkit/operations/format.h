@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "toolkit/io/held_parts.h"
+#include "toolkit/io/mesh_formats.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/operations/data.h"
 #include "toolkit/operations/parameter.h"
@@ -97,5 +97,19 @@ std::string listed_extensions(std::vector<std::string> extensions);
 /// holds no texture coordinates or order of vertices; written without". None where it holds all.
 std::vector<std::string> notes_on_losses(const Format& format, const Data& data,
                                          const WriteRequest& request);
+
+/// Calls `write`, which makes the request's target and returns its files, and lets the request's
+/// further files appear beside it right after; where either fails, nothing appears. Returns all
+/// files. Throws OutputError.
+std::vector<std::filesystem::path> write_with_extra(
+    const WriteRequest& request, const std::function<std::vector<std::filesystem::path>()>& write);
+
+/// Writes `text` to the request's target, and its further files beside it. Returns all files.
+/// Throws OutputError.
+std::vector<std::filesystem::path> write_text(const WriteRequest& request, const std::string& text);
+
+/// The same with the text of a document.
+std::vector<std::filesystem::path> write_document(const Data& document, const WriteRequest& request,
+                                                  const Context& context = {});
 
 }  // namespace mimetra

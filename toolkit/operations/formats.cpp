@@ -1,14 +1,10 @@
-#include "toolkit/operations/formats.h"
-
 #include <algorithm>
 #include <iterator>
 
 #include "toolkit/io/components_file.h"
 #include "toolkit/io/gltf_write.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/missing_path.h"
 #include "toolkit/io/model_file.h"
-#include "toolkit/io/pending_output.h"
 #include "toolkit/io/regions_file.h"
 #include "toolkit/io/scene.h"
 #include "toolkit/io/sequence_file.h"
@@ -19,12 +15,13 @@
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/expression_notes.h"
 #include "toolkit/operations/sequence_parameters.h"
+#include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {
 
-using Paths = std::vector<std::filesystem::path>;
-
 namespace {
+
+using Paths = std::vector<std::filesystem::path>;
 
 /// Throws MismatchError for regions without a mesh.
 void check_shown(const FieldSequence& regions, const std::filesystem::path& target) {
@@ -315,32 +312,6 @@ std::vector<std::string> lost_weights(const Data& data, const std::filesystem::p
 }
 
 }  // namespace
-
-Paths write_with_extra(const WriteRequest& request, const std::function<Paths()>& write) {
-  // The parents that the request's target needs are made first and go last where it fails.
-  PendingOutputs extra(request.overwrite, request.inputs, request.together);
-  Paths beside;
-  for (const auto& [name, content] : request.extra) {
-    beside.push_back(request.target.parent_path() / name);
-    write_bytes(extra.add(beside.back(), PendingOutput::Kind::file, existing_beside(name)),
-                content);
-  }
-  Paths written = write();
-  extra.commit();
-  written.insert(written.end(), beside.begin(), beside.end());
-  return written;
-}
-
-Paths write_text(const WriteRequest& request, const std::string& text) {
-  return write_with_extra(request, [&]() -> Paths {
-    write_file(request.target, text, request.overwrite, request.together);
-    return {request.target};
-  });
-}
-
-Paths write_document(const Data& document, const WriteRequest& request, const Context&) {
-  return write_text(request, std::get<Document>(document).text);
-}
 
 void add_formats(OperationTable& table) {
   add_sequence_formats(table);

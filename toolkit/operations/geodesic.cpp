@@ -5,14 +5,14 @@
 #include <nlohmann/json.hpp>
 
 #include "geodesic/support_map.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/command_terms.h"
-#include "toolkit/operations/json.h"
-#include "toolkit/operations/memory_use.h"
+#include "toolkit/operations/option_words.h"
 #include "toolkit/operations/pipeline_parameters.h"
+#include "toolkit/operations/this_process.h"
 #include "toolkit/operations/toolkit_operations.h"
-#include "toolkit/pipeline/distance_memory.h"
+#include "toolkit/pipeline/analysis.h"
 
 namespace mimetra {
 

@@ -2,11 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/json_text.h"
 #include "toolkit/mesh/inspection.h"
 #include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/json.h"
-#include "toolkit/operations/times_text.h"
+#include "toolkit/operations/reports.h"
 #include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {

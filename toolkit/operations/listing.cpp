@@ -1,11 +1,10 @@
-#include "toolkit/operations/listing.h"
-
 #include <algorithm>
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/json_text.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/json.h"
+#include "toolkit/operations/operation.h"
 
 namespace mimetra {
 

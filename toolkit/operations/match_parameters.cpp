@@ -1,25 +1,70 @@
 #include "toolkit/operations/match_parameters.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
-#include <optional>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "toolkit/io/correspondence_file.h"
+#include "toolkit/io/landmark_vertices.h"
 #include "toolkit/io/marker_file.h"
+#include "toolkit/io/model_file.h"
 #include "toolkit/io/rules_file.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
-#include "toolkit/operations/command_terms.h"
-#include "toolkit/operations/counted.h"
-#include "toolkit/operations/heads.h"
+#include "toolkit/operations/option_words.h"
 #include "toolkit/operations/pipeline_parameters.h"
-#include "toolkit/pipeline/given_markers.h"
+#include "toolkit/operations/reports.h"
 
 namespace mimetra {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where a value was read; empty for one that was made.
+fs::path place_of(const NamedData& value) {
+  if (!value.origin.path.empty()) return value.origin.path;
+  std::error_code unreadable;
+  return fs::exists(value.name, unreadable) ? fs::path(value.name) : fs::path();
+}
+
+LandmarkVertices landmarks_beside(const fs::path& place, int vertices, const Log& log) {
+  std::vector<fs::path> files = landmark_mappings(place);
+  // Of several, that of the 68 counts.
+  std::stable_partition(files.begin(), files.end(),
+                        [](const fs::path& file) { return file.filename() == "landmarks68.txt"; });
+  if (files.empty()) return {};
+  LandmarkVertices landmarks = ibug_landmarks(read_landmark_mapping(files.front()));
+  const auto is_beyond = [vertices](const auto& each) { return each.second >= vertices; };
+  const auto beyond = std::ranges::find_if(landmarks, is_beyond);
+  if (beyond == landmarks.end()) return landmarks;
+  if (log) {
+    log(LogLevel::warning, files.front().string() + ": names vertex " +
+                               std::to_string(beyond->second) + ", " + place.string() + " has " +
+                               std::to_string(vertices) + "; it is of another mesh, and left out");
+  }
+  return {};
+}
+
+/// Of a sequence or a model.
+TriMesh rest_mesh(const NamedData& value) {
+  if (const auto* sequence = std::get_if<FieldSequence>(&value.data)) {
+    return {sequence->frames->rest(), sequence->frames->connectivity()};
+  }
+  const BlendshapeModel& model = person_of(value);
+  return {model.neutral(), model.connectivity()};
+}
+
+}  // namespace
+
+Head head_of(const NamedData& value, const Log& log, bool ignore_files) {
+  Head head{value.name, rest_mesh(value)};
+  const fs::path place = place_of(value);
+  if (!ignore_files && !place.empty()) {
+    head.known = landmarks_beside(place, static_cast<int>(head.mesh.positions.rows()), log);
+  }
+  return head;
+}
 
 namespace {
 
@@ -60,15 +105,6 @@ std::vector<std::string> named_for_each(const Parameters& parameters, const std:
                    (words.empty() ? "" : " or words (" + joined(words, ", ", " or ") + ")") +
                    ", expected one for all targets or one for each of " + std::to_string(targets) +
                    ", between commas");
-}
-
-/// Of a sequence or a model.
-TriMesh rest_mesh(const Data& data) {
-  if (const auto* sequence = std::get_if<FieldSequence>(&data)) {
-    return {sequence->frames->rest(), sequence->frames->connectivity()};
-  }
-  const BlendshapeModel& model = std::get<ModelData>(data).model.average();
-  return {model.neutral(), model.connectivity()};
 }
 
 /// Looks for markers from a call's source to its targets; the source's face is looked for once.
@@ -113,7 +149,7 @@ bool has_no_weights(const Parameters& parameters, const BlendshapeModel& model) 
 /// The rules that are found beside a target; none where they cannot act.
 WeightRules found_rules(const Invocation& invocation, const NamedData& target) {
   const Parameters& parameters = invocation.parameters;
-  if (has_no_weights(parameters, std::get<ModelData>(target.data).model.average())) return {};
+  if (has_no_weights(parameters, person_of(target))) return {};
   const auto found = rules_beside(target.origin.path);
   if (!found) return {};
   if (parameters.find("per-region") && parameters.flag("per-region")) {
@@ -158,8 +194,7 @@ WeightOptionTargets targets_with(const Invocation& invocation, const std::string
     const bool has_file = rules[t] != kAuto && rules[t] != kNone;
     if (option == "rules" ? !has_file : !is_set) continue;
     ++found.asked;
-    const BlendshapeModel& model = std::get<ModelData>(targets[t].data).model.average();
-    if (has_no_weights(parameters, model)) found.without.push_back(targets[t].name);
+    if (has_no_weights(parameters, person_of(targets[t]))) found.without.push_back(targets[t].name);
   }
   return found;
 }
@@ -251,11 +286,11 @@ std::vector<Target> targets_of(const Invocation& invocation, const std::string& 
   if (parameters.flag("ignore-files") && !looks) {
     throw UsageError("--ignore-files: nothing is looked for with --markers or --correspondence");
   }
-  const TriMesh source = rest_mesh(invocation.input(source_name).data);
+  const TriMesh source = rest_mesh(invocation.input(source_name));
   const MarkersTo markers_to(invocation, source_name);
   std::vector<Target> targets;
   for (std::size_t t = 0; t < given.size(); ++t) {
-    const BlendshapeModel& model = std::get<ModelData>(given[t].data).model.average();
+    const BlendshapeModel& model = person_of(given[t]);
     targets.push_back({given[t].name, model});
     Target& target = targets.back();
     target.rules = std::move(rules[t]);
@@ -292,63 +327,6 @@ void check_targets(const Invocation& invocation, const std::vector<Target>& targ
       }
     }
   });
-}
-
-Json json_of(const MatchReport& match) {
-  const CorrespondenceQuality& quality = match.quality;
-  Json json = {{"verdict", quality.verdict()},
-               {"without_partner", quality.without_partner},
-               {"mean_residual", quality.mean_residual},
-               {"largest_residual", quality.largest_residual},
-               {"seconds", match.seconds}};
-  if (match.markers > 0) {
-    json["markers"] = match.markers;
-    json["markers_found"] = match.found.has_value();
-    json["folded"] = quality.folded;
-  }
-  return json;
-}
-
-Json json_of(const std::vector<ComparedOpening>& openings) {
-  Json list = Json::array();
-  for (const ComparedOpening& opening : openings) {
-    list.push_back({{"name", opening.name},
-                    {"source", {opening.source_least, opening.source_most}},
-                    {"target", {opening.target_least, opening.target_most}},
-                    {"mean_difference", opening.difference}});
-  }
-  return list;
-}
-
-std::string summary_of(const std::vector<ComparedOpening>& openings) {
-  std::vector<std::string> parts;
-  parts.reserve(openings.size());
-  for (const ComparedOpening& opening : openings) {
-    parts.push_back(std::string(opening.name) + ' ' + percent(opening.source_least) + " to " +
-                    percent(opening.source_most) + " on the source, " +
-                    percent(opening.target_least) + " to " + percent(opening.target_most) +
-                    " here");
-  }
-  return parts.empty() ? "" : "  open, of their width: " + joined(parts, "; ", "; ") + '\n';
-}
-
-std::string summary_of(const MatchReport& match) {
-  const std::string verdict = match.quality.verdict();
-  return (match.found ? std::to_string(match.markers) + " markers found, " : "") +
-         "correspondence " + verdict.substr(0, verdict.find(':')) + ", " +
-         percent(1 - match.quality.without_partner) + " of the triangles paired, " +
-         readable(match.seconds) + " s";
-}
-
-std::vector<Field> fields_of(const Correspondence& pairs) {
-  const int triangles = pairs.target_triangles();
-  Field residual{"match_residual", Field::Location::triangles, Eigen::MatrixXd(triangles, 1)};
-  Field partners{"match_partners", Field::Location::triangles, Eigen::MatrixXd(triangles, 1), true};
-  for (int t = 0; t < triangles; ++t) {
-    residual.values(t, 0) = std::isfinite(pairs.residuals[t]) ? pairs.residuals[t] : 0;
-    partners.values(t, 0) = pairs.offsets[t + 1] - pairs.offsets[t];
-  }
-  return {residual, partners};
 }
 
 }  // namespace mimetra

@@ -2,10 +2,9 @@
 
 #include <vector>
 
-#include "toolkit/operations/json.h"
+#include "toolkit/correspondence/face_landmarks.h"
 #include "toolkit/operations/operation.h"
-#include "toolkit/pipeline/opening_comparison.h"
-#include "toolkit/pipeline/solution.h"
+#include "toolkit/pipeline/solve.h"
 
 namespace mimetra {
 
@@ -16,6 +15,12 @@ std::vector<Parameter> pairing_parameters();
 std::vector<Parameter> match_parameters();
 /// Exclusions among the options of pairing.
 std::vector<Exclusion> pairing_exclusions();
+
+/// A sequence's rest pose or a model's neutral as a head, with the landmarks that a file
+/// landmarks68.txt or ibug_to_*.txt beside it names (the first where there is a landmarks68.txt;
+/// not with `ignore_files`). A file that names vertices which the mesh has not is of another mesh:
+/// that is said, and it is left out. Throws IoError for a file that is no mapping.
+Head head_of(const NamedData& value, const Log& log, bool ignore_files = false);
 
 /// The call's targets and how they are paired with its source: where nothing is named, by markers
 /// that are looked for if faces differ. Rules of expressions are those named, or in a model's
@@ -30,17 +35,5 @@ std::vector<Target> targets_of(const Invocation& invocation, const std::string& 
 /// rules, given markers and correspondences. Markers that would be looked for in drawings are not.
 void check_targets(const Invocation& invocation, const std::vector<Target>& targets,
                    const FrameSource& source, const SolveOptions& options);
-
-/// What a correspondence is worth, for reports and for people.
-Json json_of(const MatchReport& match);
-std::string summary_of(const MatchReport& match);
-
-/// How far eyes and mouth are open on source and target, for reports and for people.
-Json json_of(const std::vector<ComparedOpening>& openings);
-std::string summary_of(const std::vector<ComparedOpening>& openings);
-
-/// Of the target's triangles: the distance from the deformed source (0 where it is nowhere near)
-/// and the number of partners.
-std::vector<Field> fields_of(const Correspondence& pairs);
 
 }  // namespace mimetra

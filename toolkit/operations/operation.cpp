@@ -6,10 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "toolkit/io/foreign_files.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/io/pending_output.h"
+#include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/json.h"
 
 namespace mimetra {
 

@@ -11,10 +11,9 @@
 #include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/data.h"
-#include "toolkit/operations/exclusion.h"
 #include "toolkit/operations/format.h"
+#include "toolkit/operations/manifest.h"
 #include "toolkit/operations/parameter.h"
-#include "toolkit/operations/run_file.h"
 
 namespace mimetra {
 
@@ -210,5 +209,11 @@ class OperationTable {
 /// The operations of the toolkit (info, check, align, geodesic, decompose, regions, transfer,
 /// evaluate, convert, retarget) and the formats of io.
 void add_toolkit(OperationTable& table);
+/// Adds `markers`, which writes what the finder of landmarks finds on two heads to a file, and that
+/// file's format.
+void add_markers(OperationTable& table);
+/// Adds the operations `operations` and `formats`, which list the table they are in. The table must
+/// outlive the call.
+void add_listing(OperationTable& table);
 
 }  // namespace mimetra

@@ -5,10 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/painting_file.h"
-#include "toolkit/mesh/suggestion.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/pipeline_parameters.h"
-#include "toolkit/operations/selection_parameters.h"
 
 namespace mimetra {
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "toolkit/operations/json.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/operations/operation.h"
 #include "toolkit/pipeline/region_choice.h"
 

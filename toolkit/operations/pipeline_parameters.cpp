@@ -1,20 +1,19 @@
 #include "toolkit/operations/pipeline_parameters.h"
 
 #include <algorithm>
+#include <array>
 
-#include <nlohmann/json.hpp>
-
-#include "toolkit/operations/command_terms.h"
-#include "toolkit/operations/memory_use.h"
+#include "toolkit/operations/option_words.h"
 #include "toolkit/operations/parameter_files.h"
-#include "toolkit/operations/selection_parameters.h"
-#include "toolkit/operations/vertex_sets.h"
-#include "toolkit/pipeline/memory.h"
-#include "toolkit/pipeline/region_border.h"
+#include "toolkit/operations/this_process.h"
+#include "toolkit/pipeline/measure.h"
 
 namespace mimetra {
 
 namespace {
+
+constexpr const char* kDecompositionGroup = "Decomposition";
+constexpr const char* kSourceGroup = "Rest pose and head motion";
 
 /// What stands for an anchor besides the number of a vertex.
 enum class AnchorWord { source, centroid };
@@ -224,6 +223,31 @@ BoundParameters<AnalysisOptions> analysis_parameters() {
   return list.under(kDecompositionGroup);
 }
 
+BoundParameters<RegionChoiceOptions> selection_parameters() {
+  using Options = RegionChoiceOptions;
+  BoundParameters<Options> list;
+  return list
+      .add("select", Options::kSelect,
+           "what regions are chosen by: energy, where the source moves most; transfer, what they "
+           "tell of the target's expressions (discs of a third of --radius, of which -k are the "
+           "most, without a decomposition)")
+      .add("triangles", Options::kTriangles,
+           "share of the triangles that the regions may hold; default any, with --select transfer "
+           "and without -k " +
+               to_text(ParameterValue(Options::kUsualShare)))
+      .add("drop-rims", Options::kDropRims,
+           "make no regions by energy on the rim of the surface, where a scan ends");
+}
+
+RegionChoiceOptions with_most_discs(RegionChoiceOptions options, const Parameters& parameters) {
+  options.discs = {};
+  if (options.select == Selector::transfer && parameters.is_set("k") &&
+      parameters.find("k")->kind == ParameterKind::integer) {
+    options.discs = parameters.integer("k");
+  }
+  return options;
+}
+
 BoundParameters<RegionChoiceOptions> region_parameters() {
   using Options = RegionChoiceOptions;
   BoundParameters<Options> list;
@@ -267,6 +291,37 @@ BoundParameters<SolveOptions> solving_parameters() {
   return list.under(kSolvingGroup);
 }
 
+const std::vector<std::string>& options_of_energy() {
+  static const std::vector<std::string> names = concatenated<std::string>(
+      {{"region", "coverage", "drop-rims", "component-fields", "complete", "complete-limit"},
+       options_of_decomposition()});
+  return names;
+}
+
+const std::vector<std::string>& options_of_decomposition() {
+  static const std::vector<std::string> names = {
+      "d-min",           "d-max",     "sparsity", "rho",       "iterations",
+      "admm-iterations", "tolerance", "signed",   "precision", "basis-tolerance"};
+  return names;
+}
+
+std::vector<Exclusion> selection_exclusions() {
+  return {
+      {options_of_decomposition(),
+       {"components"},
+       "has no effect on --components, which are decomposed already"},
+      {concatenated<std::string>({options_of_energy(), {"compat=splocs2013"}}),
+       {"select=transfer"},
+       "has no effect with --select transfer, which needs no decomposition"},
+      {{"components", "components-out"},
+       {"select=transfer"},
+       "there are no components with --select transfer"},
+      {{"select=transfer"},
+       {"space=vertex"},
+       "regions are chosen by what they tell of expressions, which --space vertex does not solve "
+       "for; use --select energy"}};
+}
+
 std::vector<Exclusion> solving_exclusions() {
   return {{{"outside-smoothness"}, {"!outside=identity"}, "is about --outside identity"},
           {{"triangles"},
@@ -292,15 +347,28 @@ std::vector<Exclusion> solving_exclusions() {
            "undeformed shape is --source-rest"}};
 }
 
+void check_given_components(const Invocation& invocation) {
+  const auto* components = invocation.find<Components>("components");
+  const Parameters& parameters = invocation.parameters;
+  // The same number comes of the line that made them, with the components instead.
+  if (components && parameters.is_set("k") && parameters.integer("k") != components->count()) {
+    throw UsageError("-k: has no effect on --components, which are decomposed already");
+  }
+}
+
+namespace {
+
 /// Whether triangles of a target may have no partner in the source.
 bool pairs_targets(const Invocation& invocation) {
   if (!invocation.parameters.paths("correspondence").empty()) return true;
   const FrameSource& frames = *invocation.get<FieldSequence>("source").frames;
   const TriMesh source{frames.rest(), frames.connectivity()};
   return std::ranges::any_of(invocation.inputs.at("target"), [&source](const NamedData& target) {
-    return !has_faces_of(source, std::get<ModelData>(target.data).model.average());
+    return !has_faces_of(source, person_of(target));
   });
 }
+
+}  // namespace
 
 void check_solving(const Invocation& invocation) {
   const Parameters& parameters = invocation.parameters;
@@ -312,8 +380,7 @@ void check_solving(const Invocation& invocation) {
   }
   if (!parameters.flag("per-region")) return;
   for (const NamedData& target : invocation.inputs.at("target")) {
-    const BlendshapeModel& model = std::get<ModelData>(target.data).model.average();
-    if (!solves_for_vertices(parameters, model)) continue;
+    if (!solves_for_vertices(parameters, person_of(target))) continue;
     throw UsageError("--per-region: " + target.name + " is solved for vertices, not weights");
   }
 }
@@ -322,10 +389,24 @@ void check_border(const Invocation& invocation, const GivenRegions* given,
                   const SolveOptions& options) {
   in_command_terms(invocation.parameters, [&] {
     for (const NamedData& target : invocation.inputs.at("target")) {
-      const BlendshapeModel& model = std::get<ModelData>(target.data).model.average();
-      check_border(given, Target{target.name, model}, options);
+      check_border(given, Target{target.name, person_of(target)}, options);
     }
   });
+}
+
+void set_usual_border(const Invocation& invocation, SolveOptions& options) {
+  static constexpr std::array kNames = {"falloff", "paint", "triangles", "anchor", "curve"};
+  const auto is_set = [&](const char* name) { return invocation.parameters.is_set(name); };
+  const auto has_expressions = [](const NamedData& target) {
+    return person_of(target).expressions().size() > 0;
+  };
+  const RegionData* given = invocation.find<RegionData>("regions");
+  const bool has_border = given && given->regions.weights.size() > 0;
+  if (std::ranges::any_of(kNames, is_set) || has_border || options.outside == Outside::identity ||
+      std::ranges::any_of(invocation.inputs.at("target"), has_expressions)) {
+    return;
+  }
+  options.falloff = SolveOptions::kBareFalloff;
 }
 
 SourceOptions described(SourceOptions options, const NamedData& input) {
@@ -347,22 +428,6 @@ Output components_output() {
 
 bool solves_for_vertices(const Parameters& parameters, const BlendshapeModel& target) {
   return solves_for_vertices(target, parameters.choice<Space>("space"));
-}
-
-Json json_of(const HeadMotionTaken& motion) {
-  Json json = {{"align", motion.how},
-               {"reason", motion.why},
-               {"largest_rotation_degrees", motion.angle},
-               {"largest_translation", motion.shift}};
-  if (motion.stillest) json["stillest_vertices_share_of_size"] = *motion.stillest;
-  if (motion.disagreement) {
-    json["disagreement_degrees"] = *motion.disagreement;
-    json["uncertain"] = motion.is_uncertain();
-  }
-  if (motion.held_out) {
-    json["held_out"] = {{"stable", motion.held_out->stable}, {"joint", motion.held_out->joint}};
-  }
-  return json;
 }
 
 Context within_memory(const Invocation& invocation) {

@@ -3,9 +3,7 @@
 #include <string>
 
 #include "toolkit/operations/bound_parameters.h"
-#include "toolkit/operations/json.h"
 #include "toolkit/operations/operation.h"
-#include "toolkit/pipeline/evaluation.h"
 #include "toolkit/pipeline/transfer.h"
 #include "toolkit/splocs/decomposition_plan.h"
 
@@ -15,8 +13,6 @@ namespace mimetra {
 
 // Headings of the help under which they stand.
 inline constexpr const char* kRegionGroup = "Regions";
-inline constexpr const char* kDecompositionGroup = "Decomposition";
-inline constexpr const char* kSourceGroup = "Rest pose and head motion";
 inline constexpr const char* kSolvingGroup = "Solving";
 
 /// --align.
@@ -73,6 +69,30 @@ BoundParameters<Options> blendshape_parameters() {
            "up or down, and in or out; all: jawOpen or mouthClose, too");
 }
 
+/// --select, --triangles and --drop-rims.
+BoundParameters<RegionChoiceOptions> selection_parameters();
+
+/// The options with what -k says where regions are chosen for the transfer: discs at most, and any
+/// number of them where nobody says so.
+RegionChoiceOptions with_most_discs(RegionChoiceOptions options, const Parameters& parameters);
+
+/// Options that only regions by energy depend on.
+const std::vector<std::string>& options_of_energy();
+
+/// Those of them, but for -k, that the decomposition depends on.
+const std::vector<std::string>& options_of_decomposition();
+
+/// Exclusions of a decomposition's options by --components and by --select transfer, and of
+/// --select transfer by --space vertex.
+std::vector<Exclusion> selection_exclusions();
+
+/// Throws UsageError if the call is given components, and -k asks for another number of them.
+void check_given_components(const Invocation& invocation);
+
+/// Lets regions fade out where no target has expressions and no option says how they end: a hard
+/// border would tear the mesh.
+void set_usual_border(const Invocation& invocation, SolveOptions& options);
+
 /// The call's context, within the memory of --memory: by default what the machine has left.
 Context within_memory(const Invocation& invocation);
 
@@ -95,9 +115,6 @@ std::optional<GivenComponents> given_components(const Invocation& invocation);
 
 /// The output `components-out` of operations that decompose on the way to something else.
 Output components_output();
-
-/// What was done about head motion, for reports.
-Json json_of(const HeadMotionTaken& motion);
 
 /// True for the vertex space of --space, and where a target has no expressions to solve for.
 bool solves_for_vertices(const Parameters& parameters, const BlendshapeModel& target);

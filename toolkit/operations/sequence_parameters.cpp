@@ -2,16 +2,12 @@
 
 namespace mimetra {
 
-BoundParameters<SequenceSource> choice_of_frames() {
+BoundParameters<SequenceSource> frame_parameters() {
   BoundParameters<SequenceSource> list;
   return list
       .add("frames", SequenceSource::kFrames, "part A:B:STEP of the frames, 0-based, B excluded")
-      .brief("part A:B:STEP of the frames");
-}
-
-BoundParameters<SequenceSource> frame_parameters() {
-  return choice_of_frames().add("fps", SequenceSource::kFps,
-                                "frame rate of formats without times, as 30 or 24000/1001");
+      .brief("part A:B:STEP of the frames")
+      .add("fps", SequenceSource::kFps, "frame rate of formats without times, as 30 or 24000/1001");
 }
 
 BoundParameters<SequenceSource> sequence_parameters() {

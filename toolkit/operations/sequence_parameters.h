@@ -1,14 +1,13 @@
 #pragma once
 
-#include "toolkit/io/sequence_options.h"
+#include "toolkit/io/sequence_format.h"
 #include "toolkit/operations/bound_parameters.h"
 
 namespace mimetra {
 
 // The options of io as parameters of what reads and writes sequences.
 
-/// --frames, of all that has some; with --fps, of all that has no times.
-BoundParameters<SequenceSource> choice_of_frames();
+/// --frames, and --fps of all that has no times.
 BoundParameters<SequenceSource> frame_parameters();
 /// All that a sequence is read by: --weights, --topology, --frames and --fps.
 BoundParameters<SequenceSource> sequence_parameters();

@@ -1,14 +1,14 @@
 #include <nlohmann/json.hpp>
 
-#include "toolkit/correspondence/renumbered_frames.h"
+#include "toolkit/correspondence/renumbering.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/mesh/simplification.h"
 #include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
-#include "toolkit/operations/json.h"
-#include "toolkit/operations/lost_expressions.h"
+#include "toolkit/operations/reports.h"
 #include "toolkit/operations/toolkit_operations.h"
-#include "toolkit/pipeline/memory.h"
+#include "toolkit/pipeline/measure.h"
 
 namespace mimetra {
 
@@ -61,16 +61,6 @@ void warn_of(const Simplification& made, const FieldSequence& given, double shar
   }
 }
 
-/// The report with the vertices' numbers, whose text is a few times smaller than the values.
-std::string report_with(const Json& report, const std::vector<VertexIndex>& vertices) {
-  std::string text = json_text(report);
-  text.back() = ',';
-  text += "\"kept\":[";
-  for (const VertexIndex vertex : vertices) text += std::to_string(vertex) + ',';
-  text.back() = ']';
-  return text + '}';
-}
-
 Outcome run_simplify(const Invocation& invocation) {
   const NamedData& input = invocation.input("sequence");
   const auto& given = std::get<FieldSequence>(input.data);
@@ -87,13 +77,14 @@ Outcome run_simplify(const Invocation& invocation) {
     simplified.fields.push_back(renumbered(field, made.vertices));
   }
   Outcome outcome;
-  outcome.report = report_with(Json{{"frames", given.frames->frames()},
-                                    {"vertices", made.vertices.size()},
-                                    {"given_vertices", given.frames->vertices()},
-                                    {"triangles", made.connectivity->triangles.rows()},
-                                    {"locked_vertices", made.locked},
-                                    {"folded_triangles", made.folded}},
-                               made.vertices);
+  const Json report = {{"frames", given.frames->frames()},
+                       {"vertices", made.vertices.size()},
+                       {"given_vertices", given.frames->vertices()},
+                       {"triangles", made.connectivity->triangles.rows()},
+                       {"locked_vertices", made.locked},
+                       {"folded_triangles", made.folded}};
+  outcome.report = report_with(report, "kept", made.vertices.size(),
+                               [&made](std::size_t i) { return std::to_string(made.vertices[i]); });
   outcome.summary = std::to_string(made.vertices.size()) + " of " +
                     std::to_string(given.frames->vertices()) + " vertices, " +
                     std::to_string(made.connectivity->triangles.rows()) + " of " +

@@ -2,12 +2,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/json_text.h"
 #include "toolkit/mesh/subdivision.h"
 #include "toolkit/operations/bound_parameters.h"
-#include "toolkit/operations/json.h"
-#include "toolkit/operations/lost_expressions.h"
+#include "toolkit/operations/reports.h"
 #include "toolkit/operations/toolkit_operations.h"
-#include "toolkit/pipeline/memory.h"
+#include "toolkit/pipeline/measure.h"
 
 namespace mimetra {
 

@@ -1,7 +1,6 @@
 #include "toolkit/operations/toolkit_operations.h"
 
-#include "toolkit/operations/formats.h"
-#include "toolkit/operations/rig_operation.h"
+#include "toolkit/operations/format.h"
 #include "toolkit/operations/weight_tables.h"
 
 namespace mimetra {

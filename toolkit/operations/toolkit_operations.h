@@ -13,9 +13,13 @@ Operation decompose_operation();
 Operation regions_operation();
 Operation transfer_operation();
 Operation evaluate_operation();
+Operation rig_operation();
 Operation convert_operation();
 Operation simplify_operation();
 Operation subdivide_operation();
 Operation retarget_operation();
+
+/// Adds the formats of io but for those of tables (weight_tables.h).
+void add_formats(OperationTable& table);
 
 }  // namespace mimetra

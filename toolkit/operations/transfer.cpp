@@ -3,23 +3,18 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/correspondence_file.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/command_terms.h"
-#include "toolkit/operations/convergence_report.h"
-#include "toolkit/operations/formats.h"
-#include "toolkit/operations/json.h"
 #include "toolkit/operations/match_parameters.h"
-#include "toolkit/operations/measures.h"
+#include "toolkit/operations/option_words.h"
 #include "toolkit/operations/paint_parameter.h"
 #include "toolkit/operations/pipeline_parameters.h"
-#include "toolkit/operations/region_report.h"
-#include "toolkit/operations/selection_parameters.h"
-#include "toolkit/operations/times_text.h"
+#include "toolkit/operations/reports.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/operations/weight_tables.h"
-#include "toolkit/pipeline/memory.h"
+#include "toolkit/pipeline/measure.h"
 
 namespace mimetra {
 
@@ -68,10 +63,6 @@ const std::vector<Exclusion>& transfer_exclusions() {
   return list;
 }
 
-const BlendshapeModel& model_of(const NamedData& target) {
-  return std::get<ModelData>(target.data).model.average();
-}
-
 /// True if an option, input or output of the call is refused beside --full.
 bool asks_for_regions(const Invocation& invocation) {
   Parameters with_full = invocation.parameters;
@@ -88,7 +79,7 @@ bool asks_for_regions(const Invocation& invocation) {
 bool takes_all_triangles(const Invocation& invocation) {
   if (invocation.parameters.flag("full")) return true;
   const auto has_expressions = [](const NamedData& target) {
-    return model_of(target).expressions().size() > 0;
+    return person_of(target).expressions().size() > 0;
   };
   return std::ranges::none_of(invocation.inputs.at("target"), has_expressions) &&
          !asks_for_regions(invocation);
@@ -213,11 +204,11 @@ void check_outputs(const Invocation& invocation, const TransferOptions& options)
   }
   if (!invocation.wants("weights-out")) return;
   for (const NamedData& target : invocation.inputs.at("target")) {
-    if (solves_for_vertices(model_of(target), options.solve.space)) {
+    if (solves_for_vertices(person_of(target), options.solve.space)) {
       throw UsageError("--weights-out: " + target.name + " is solved for vertices, not weights");
     }
     if (options.solve.per_region) check_no_live_link(invocation, "weights-out");
-    check_live_link(invocation, "weights-out", model_of(target).expressions().names);
+    check_live_link(invocation, "weights-out", person_of(target).expressions().names);
   }
 }
 
@@ -348,12 +339,12 @@ double memory_of_transfer(const Invocation& invocation) {
   const FrameSource& frames = *held.frames;
   double solutions = stored_bytes(frames), most_selection = 0;
   for (const NamedData& target : invocation.inputs.at("target")) {
-    solutions += solution_bytes(frames, model_of(target), options.solve, invocation.context);
+    solutions += solution_bytes(frames, person_of(target), options.solve, invocation.context);
     if (options.regions.select == Selector::transfer) {
-      most_selection = std::max(most_selection, selection_bytes(frames, model_of(target)));
+      most_selection = std::max(most_selection, selection_bytes(frames, person_of(target)));
     }
     if (options.solve.per_region) {
-      solutions += regional_bytes(frames, model_of(target), region_count(invocation, options),
+      solutions += regional_bytes(frames, person_of(target), region_count(invocation, options),
                                   invocation.context);
     }
     // Results of a source in memory are there, too.

@@ -9,7 +9,6 @@
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/animation.h"
-#include "toolkit/operations/formats.h"
 
 namespace mimetra {
 namespace {
@@ -18,6 +17,11 @@ constexpr const char* kTimeColumn = "time";
 constexpr const char* kLiveLink = ".livelink.csv";
 
 using Paths = std::vector<std::filesystem::path>;
+
+/// Of Live Link Face's form.
+bool is_live_link(const std::filesystem::path& path) {
+  return lower_case(path.filename().string()).ends_with(kLiveLink);
+}
 
 ReadValue read_weight_table(const std::string& text, const ReadRequest&, const Context&) {
   const WeightTrack track = read_weights(text);
@@ -129,10 +133,6 @@ WeightTrack track_of(const Table& table) {
     }
   }
   return track;
-}
-
-bool is_live_link(const std::filesystem::path& path) {
-  return lower_case(path.filename().string()).ends_with(kLiveLink);
 }
 
 bool is_weight_file(const std::filesystem::path& path) {

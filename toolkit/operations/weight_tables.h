@@ -17,8 +17,7 @@ Table weight_table(const WeightTrack& track);
 /// weight.
 WeightTrack track_of(const Table& table);
 
-/// True for a path of Live Link Face's form, or of any form that sequences are weights in.
-bool is_live_link(const std::filesystem::path& path);
+/// True for a path of a form that sequences are weights in.
 bool is_weight_file(const std::filesystem::path& path);
 
 /// Throws UsageError where an output is wanted in Live Link Face's form and none of its expressions

@@ -9,8 +9,8 @@
 #include "toolkit/correspondence/mesh_drawing.h"
 #include "toolkit/drawing/sheet_layout.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/measures.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/mesh/triangle_quality.h"
 
 namespace mimetra {
 

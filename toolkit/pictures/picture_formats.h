@@ -1,10 +1,15 @@
 #pragma once
 
+#include "toolkit/drawing/picture.h"
+#include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/operation.h"
 
 namespace mimetra {
 
 /// Adds .png of pictures and of tables, folders of pictures, and the operation `render`.
 void add_pictures(OperationTable& table);
+
+/// --yaw, --pitch and --up.
+BoundParameters<Viewpoint> viewpoint_parameters();
 
 }  // namespace mimetra

@@ -7,6 +7,7 @@
 
 #include "toolkit/pipeline/source.h"
 #include "toolkit/splocs/decomposition.h"
+#include "toolkit/splocs/surface_distances.h"
 
 namespace mimetra {
 
@@ -44,6 +45,14 @@ struct DistanceOptions {
 /// range.
 SurfaceDistances distances_along(const Positions& rest, const Triangles& triangles,
                                  const DistanceOptions& options = {}, const Context& = {});
+
+/// Bytes that distances from several sources take besides what planned_decomposition() counts, if
+/// each thread asks from one source at a time. Only exact distances take any.
+double distance_bytes(GeodesicMethod method, Eigen::Index vertices, int sources, const Context&);
+
+/// The context with the memory that these distances leave. Throws MismatchError if they take more
+/// than there is.
+Context beside_distances(GeodesicMethod method, Eigen::Index vertices, int sources, const Context&);
 
 /// Distances between which a support map rises, absolute.
 struct SupportRange {

@@ -1,10 +1,8 @@
-#include "toolkit/pipeline/joint_motion.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "toolkit/regions/regions.h"
+#include "toolkit/pipeline/solve.h"
 #include "toolkit/transfer/joint_fit.h"
 
 namespace mimetra {
@@ -37,14 +35,6 @@ std::vector<int> patches_of(const Positions& rest) {
     nearest.maxCoeff(&center);
   }
   return patch;
-}
-
-/// Some frames, evenly over time, in memory.
-MeshSequence judged_frames(const std::shared_ptr<const FrameSource>& sequence) {
-  const int count = std::min(sequence->frames(), kJudgedFrames);
-  std::vector<int> chosen(count);
-  for (int k = 0; k < count; ++k) chosen[k] = k * sequence->frames() / count;
-  return MeshSequence(*selected(sequence, chosen)).with_rest(sequence->rest());
 }
 
 /// A part of the vertices, in memory, without triangles.
@@ -109,7 +99,7 @@ std::optional<HeldOutErrors> held_out_errors(const std::shared_ptr<const FrameSo
                                              const Context& context) {
   const BlendshapeModel& target = matched.model;
   const Pairing* pairing = matched.pairing.get();
-  const MeshSequence judged = judged_frames(placed);
+  const MeshSequence judged = spread_frames(placed, kJudgedFrames, context.part(0, 0));
   const MeshSequence sequence = pairing ? on_target(judged, target, *pairing) : judged;
   const std::vector<int> patch = patches_of(sequence.rest());
   HeldOutErrors sums;

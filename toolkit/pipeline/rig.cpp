@@ -7,12 +7,10 @@
 #include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/model/displaced_expressions.h"
 #include "toolkit/model/expression_names.h"
-#include "toolkit/pipeline/target_notes.h"
-#include "toolkit/pipeline/usability.h"
+#include "toolkit/model/expression_notes.h"
+#include "toolkit/pipeline/measure.h"
 #include "toolkit/transfer/following_parts.h"
-#include "toolkit/transfer/transfer_error.h"
 
 namespace mimetra {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "toolkit/pipeline/solution.h"
+#include "toolkit/pipeline/solve.h"
 #include "toolkit/transfer/example_rig.h"
 
 namespace mimetra {

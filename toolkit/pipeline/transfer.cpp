@@ -2,16 +2,12 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/pipeline/joint_motion.h"
-#include "toolkit/pipeline/region_border.h"
-#include "toolkit/pipeline/region_completer.h"
-#include "toolkit/pipeline/region_selector.h"
-#include "toolkit/pipeline/solution_error.h"
-#include "toolkit/pipeline/usability.h"
+#include "toolkit/pipeline/measure.h"
 
 namespace mimetra {
 
@@ -22,6 +18,52 @@ namespace {
 constexpr double kSourceShare = 0.1;
 constexpr double kRegionShare = 0.7;
 constexpr double kSolveShare = 0.7;
+
+void check_full(const TransferOptions& options) {
+  if (options.full && options.solve.per_region) {
+    throw std::invalid_argument("per_region: a full transfer has no regions");
+  }
+  if (options.full && options.solve.falloff) {
+    throw std::invalid_argument("falloff: a full transfer has no regions");
+  }
+}
+
+std::vector<MatchedTarget> matched_targets(const FrameSource& sequence,
+                                           const std::vector<Target>& given,
+                                           const SourceOptions& options, const Context& context) {
+  std::vector<MatchedTarget> matched;
+  for (const Target& target : given) {
+    std::optional<Positions> rest;
+    if (is_to_be_paired(sequence, target)) rest = asked_rest(sequence, options);
+    matched.emplace_back(sequence, target, rest, context);
+  }
+  return matched;
+}
+
+/// Whether a frame differs from the rest pose. Reads until it finds one.
+bool moves(const FrameSource& sequence) {
+  const double least = kLeastMotion * sequence.diameter();
+  for (int f = 0; f < sequence.frames(); ++f) {
+    const FrameBlock block(sequence, f, 1);
+    if ((block.frame(0) - sequence.rest()).rowwise().norm().maxCoeff() > least) return true;
+  }
+  return false;
+}
+
+/// Where all frames are the rest pose the result would be perfect, and the target's neutral: says
+/// so, and of a single frame throws MismatchError.
+void expect_motion(const FrameSource& sequence, const std::string& name, const Context& context) {
+  if (moves(sequence)) return;
+  const bool single = sequence.frames() == 1;
+  const std::string text =
+      name + ": nothing moves: " +
+      (single ? "it has one frame, its rest pose"
+              : "all " + std::to_string(sequence.frames()) + " frames are its rest pose") +
+      "; give what drives it (option 'weights') where it is a model, or its undeformed shape "
+      "(option 'source-rest')";
+  if (single) throw MismatchError(text);
+  context.note(text);
+}
 
 struct Choice {
   std::optional<Regions> regions = {};
@@ -58,43 +100,6 @@ Choice choose(const Source& source, const TransferOptions& options, const Contex
           stopwatch.seconds()};
 }
 
-/// Whether a frame differs from the rest pose. Reads until it finds one.
-bool moves(const FrameSource& sequence) {
-  const double least = kLeastMotion * sequence.diameter();
-  for (int f = 0; f < sequence.frames(); ++f) {
-    const FrameBlock block(sequence, f, 1);
-    if ((block.frame(0) - sequence.rest()).rowwise().norm().maxCoeff() > least) return true;
-  }
-  return false;
-}
-
-/// Where all frames are the rest pose the result would be perfect, and the target's neutral: says
-/// so, and of a single frame throws MismatchError.
-void expect_motion(const FrameSource& sequence, const std::string& name, const Context& context) {
-  if (moves(sequence)) return;
-  const bool single = sequence.frames() == 1;
-  const std::string text =
-      name + ": nothing moves: " +
-      (single ? "it has one frame, its rest pose"
-              : "all " + std::to_string(sequence.frames()) + " frames are its rest pose") +
-      "; give what drives it (option 'weights') where it is a model, or its undeformed shape "
-      "(option 'source-rest')";
-  if (single) throw MismatchError(text);
-  context.note(text);
-}
-
-std::vector<MatchedTarget> matched_targets(const FrameSource& sequence,
-                                           const std::vector<Target>& given,
-                                           const SourceOptions& options, const Context& context) {
-  std::vector<MatchedTarget> matched;
-  for (const Target& target : given) {
-    std::optional<Positions> rest;
-    if (is_to_be_paired(sequence, target)) rest = asked_rest(sequence, options);
-    matched.emplace_back(sequence, target, rest, context);
-  }
-  return matched;
-}
-
 /// The regions that a target is solved by; none for all triangles.
 std::optional<Regions> regions_for(const Target& target, const Source& placed, Choice& choice,
                                    const SolveOptions& of_solving, const Context& context) {
@@ -108,27 +113,32 @@ std::optional<Regions> regions_for(const Target& target, const Source& placed, C
   return (*choice.completion)(*choice.regions, target, of_solving, context);
 }
 
-/// The discs of `completed` that `regions` lack.
-void take_over(const Regions& completed, Regions& regions, const Triangles& triangles) {
-  std::vector<Region> added;
-  for (const Region& region : completed.regions) {
-    const bool is_known = std::ranges::any_of(regions.regions, [&region](const Region& other) {
-      return other.center == region.center && other.vertices == region.vertices;
-    });
-    if (!region.added_for.empty() && !is_known) added.push_back(region);
-  }
-  regions = with_added(regions, std::move(added), triangles);
+/// Options that are on and hold a target off what the source does, "option 'smoothness'", as they
+/// are named in parameters.
+std::vector<std::string> holding_options(const Target& target, const SolveOptions& options) {
+  std::vector<std::string> names;
+  const auto add = [&names](bool is_on, const std::string& name) {
+    if (is_on) names.push_back("option '" + name + "'");
+  };
+  add(options.smoothness > 0, "smoothness");
+  if (solves_for_vertices(target.model, options.space)) return names;
+  add(options.ridge > 0, "ridge");
+  add(options.sparsity > 0, "l1");
+  add(options.symmetry > 0, "symmetry");
+  add(options.exclusive != Exclusive::none, "exclusive");
+  add(!target.rules.empty(), "rules");
+  return names;
 }
 
-/// What the regions of all targets together are; none where each has its own.
-std::optional<Regions> regions_of(const std::vector<TransferredTarget>& targets, Choice& choice,
-                                  const RegionChoiceOptions& options, const Triangles& triangles) {
-  if (targets.size() == 1) return targets.front().regions;
-  if (has_own_regions(options)) return {};
-  for (const TransferredTarget& each : targets) {
-    if (each.regions) take_over(*each.regions, *choice.regions, triangles);
-  }
-  return std::move(choice.regions);
+Target without_holds(Target target) {
+  target.rules = {};
+  return target;
+}
+
+SolveOptions without_holds(SolveOptions options) {
+  options.smoothness = options.ridge = options.sparsity = options.symmetry = 0;
+  options.exclusive = Exclusive::none;
+  return options;
 }
 
 /// A target's solve and what it takes its error over.
@@ -216,21 +226,27 @@ std::vector<ComparedOpening> openings_on(const MatchedTarget& target, const Fram
   return openings;
 }
 
-void check_full(const TransferOptions& options) {
-  if (options.full && options.solve.per_region) {
-    throw std::invalid_argument("per_region: a full transfer has no regions");
+/// The discs of `completed` that `regions` lack.
+void take_over(const Regions& completed, Regions& regions, const Triangles& triangles) {
+  std::vector<Region> added;
+  for (const Region& region : completed.regions) {
+    const bool is_known = std::ranges::any_of(regions.regions, [&region](const Region& other) {
+      return other.center == region.center && other.vertices == region.vertices;
+    });
+    if (!region.added_for.empty() && !is_known) added.push_back(region);
   }
-  if (options.full && options.solve.falloff) {
-    throw std::invalid_argument("falloff: a full transfer has no regions");
-  }
+  regions = with_added(regions, std::move(added), triangles);
 }
 
-/// With what a solve takes from the analysis unless it is given.
-SolveOptions solve_options(const TransferOptions& options) {
-  SolveOptions of_solving = options.solve;
-  if (!of_solving.edges) of_solving.edges = edge_sum(options.analysis.compatibility);
-  if (!of_solving.distances) of_solving.distances = options.analysis.distances;
-  return of_solving;
+/// What the regions of all targets together are; none where each has its own.
+std::optional<Regions> regions_of(const std::vector<TransferredTarget>& targets, Choice& choice,
+                                  const RegionChoiceOptions& options, const Triangles& triangles) {
+  if (targets.size() == 1) return targets.front().regions;
+  if (has_own_regions(options)) return {};
+  for (const TransferredTarget& each : targets) {
+    if (each.regions) take_over(*each.regions, *choice.regions, triangles);
+  }
+  return std::move(choice.regions);
 }
 
 }  // namespace
@@ -244,7 +260,7 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
   check_full(options);
   const std::vector<MatchedTarget> matched =
       matched_targets(sequence, given, options.source, context.part(0, 0));
-  const SolveOptions of_solving = solve_options(options);
+  const SolveOptions of_solving = with_analysis(options.solve, options.analysis);
   std::vector<Target> targets;
   for (const MatchedTarget& target : matched) {
     if (!options.full) check_selection(*target, options.regions, options.solve.space);

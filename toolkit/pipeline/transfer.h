@@ -4,8 +4,7 @@
 #include <variant>
 #include <vector>
 
-#include "toolkit/pipeline/opening_comparison.h"
-#include "toolkit/pipeline/solution.h"
+#include "toolkit/pipeline/region_choice.h"
 #include "toolkit/transfer/transfer_error.h"
 
 namespace mimetra {

@@ -12,6 +12,8 @@
 
 namespace mimetra {
 
+struct Simplification;
+
 /// What a region of interest holds.
 enum class RegionShape {
   disc,    ///< vertices within a geodesic radius of the component's centre
@@ -120,6 +122,16 @@ int regions_within(const Regions& regions, double share, const Triangles& triang
 /// The regions and further ones behind them, of which vertices, centre, radius and what they were
 /// added for are known.
 Regions with_added(const Regions& regions, std::vector<Region> added, const Triangles& triangles);
+
+/// Discs that were found on a simplified mesh, on the one that it was made from: of the same radius
+/// around the same vertices, by `distances` along that one, whose triangles these are (M x 3).
+/// `vertex_energy` (N): each vertex' share of the motion energy on it, of which regions hold
+/// theirs. Of vertices not `inside` (N, empty for all) none is in a region. Throws
+/// std::invalid_argument for regions of another number of vertices than were kept, and for one that
+/// has no centre; what the distances throw.
+Regions carried_regions(const Regions& regions, const Simplification& simplified,
+                        Eigen::VectorXd vertex_energy, const Triangles& triangles,
+                        const DistanceFunction& distances, const std::vector<bool>& inside = {});
 
 /// One region per entry from vertex lists. Throws MismatchError that names the first vertex
 /// outside 0 .. vertices - 1.

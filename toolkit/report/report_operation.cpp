@@ -4,16 +4,16 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/json_text.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/evaluation_table.h"
-#include "toolkit/operations/formats.h"
-#include "toolkit/operations/json.h"
+#include "toolkit/operations/format.h"
 #include "toolkit/operations/pipeline_parameters.h"
-#include "toolkit/pictures/render_operation.h"
-#include "toolkit/pipeline/memory.h"
+#include "toolkit/operations/reports.h"
+#include "toolkit/pictures/picture_formats.h"
+#include "toolkit/pipeline/measure.h"
 #include "toolkit/report/report_page.h"
-#include "toolkit/report/viewer_script.h"
+#include "toolkit/report/viewer_data.h"
 
 namespace mimetra {
 

@@ -1,4 +1,4 @@
-#include "toolkit/report/report_pictures.h"
+#include "toolkit/report/report_page.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,14 +6,12 @@
 #include <set>
 
 #include "toolkit/mesh/stopwatch.h"
-#include "toolkit/operations/command_terms.h"
 #include "toolkit/operations/match_parameters.h"
+#include "toolkit/operations/option_words.h"
 #include "toolkit/operations/paint_parameter.h"
 #include "toolkit/operations/pipeline_parameters.h"
-#include "toolkit/operations/selection_parameters.h"
-#include "toolkit/pipeline/joint_motion.h"
-#include "toolkit/pipeline/region_completer.h"
-#include "toolkit/pipeline/region_selector.h"
+#include "toolkit/pipeline/region_choice.h"
+#include "toolkit/pipeline/solve.h"
 
 namespace mimetra {
 

@@ -6,7 +6,7 @@
 
 #include "toolkit/mesh/context.h"
 #include "toolkit/operations/operation.h"
-#include "toolkit/pipeline/evaluation.h"
+#include "toolkit/pipeline/measure.h"
 
 namespace mimetra {
 

@@ -6,19 +6,15 @@
 #include <string>
 #include <utility>
 
-#include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/near_tie.h"
-#include "toolkit/mesh/product_blocking.h"
-#include "toolkit/splocs/component_update.h"
+#include "toolkit/mesh/measures.h"
+#include "toolkit/mesh/rounding.h"
 #include "toolkit/splocs/decomposition_plan.h"
 #include "toolkit/splocs/motion.h"
 #include "toolkit/splocs/reduction.h"
 #include "toolkit/splocs/start.h"
-#include "toolkit/splocs/support_maps.h"
 #include "toolkit/splocs/time_basis.h"
-#include "toolkit/splocs/vertex_energies.h"
-#include "toolkit/splocs/weights.h"
+#include "toolkit/splocs/updates.h"
 
 namespace mimetra {
 namespace {

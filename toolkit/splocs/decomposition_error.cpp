@@ -8,10 +8,9 @@
 #include <string>
 
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/product_blocking.h"
-#include "toolkit/splocs/motion_blocks.h"
+#include "toolkit/mesh/rounding.h"
+#include "toolkit/splocs/motion.h"
 #include "toolkit/splocs/reduction.h"
-#include "toolkit/splocs/vertex_energies.h"
 
 namespace mimetra {
 namespace {
@@ -82,7 +81,7 @@ std::unique_ptr<BlockSource<double>> motion_of(const SequencePart& sequence,
                                                const Reduction& reduction, MotionPlace place) {
   const SequencePart part{components.rest, sequence.triangles, sequence.frames};
   if (sequence.frames.reads_vertices()) {
-    return std::make_unique<SequenceBlocks>(part, reduction.part());
+    return read_displacements(part, reduction.part());
   }
   return kept_displacements(part, reduction.part(), place, reduction.context());
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "toolkit/splocs/decomposition_options.h"
-#include "toolkit/splocs/vertex_part.h"
+#include "toolkit/splocs/reduction.h"
 
 namespace mimetra {
 

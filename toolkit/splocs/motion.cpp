@@ -1,16 +1,185 @@
 #include "toolkit/splocs/motion.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <mutex>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
-#include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/frame_store.h"
+#include "toolkit/mesh/measures.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
+namespace {
+
+/// Bytes of frames that are read at once for a block.
+constexpr Eigen::Index kReadBytes = Eigen::Index{1} << 20;
+
+template <typename Block>
+auto numbers_of(Block& block) {
+  return std::span(block.data(), static_cast<std::size_t>(block.size()));
+}
+
+/// Of vertices `first` .. first + m - 1 of poses (R x 3n), from the same of the rest pose.
+VertexBlocks<double>::Block displaced(const Eigen::Map<const Frames>& poses, Eigen::Index first,
+                                      const Eigen::Ref<const Positions>& rest) {
+  VertexBlocks<double>::Block rows(poses.rows(), rest.size());
+  for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+    const PositionsView pose(poses.row(row).data() + 3 * first, rest.rows(), 3);
+    VertexBlocks<double>::by_vertex(rows, row) = pose - rest;
+  }
+  return rows;
+}
+
+/// Memory of blocks that are read, for the next ones of the same shape: what is larger than 32 MB
+/// the C library would ask of the system each time, which clears it page by page.
+template <typename Scalar>
+class BlockPool {
+ public:
+  using Block = typename BlockSource<Scalar>::Block;
+
+  /// Numbers of any value. From several threads.
+  std::shared_ptr<Block> block(Eigen::Index rows, Eigen::Index columns) const {
+    std::unique_ptr<Block> block;
+    {
+      const std::scoped_lock lock(unused_->mutex);
+      const auto found = std::ranges::find_if(unused_->blocks, [&](const auto& unused) {
+        return unused->rows() == rows && unused->cols() == columns;
+      });
+      if (found == unused_->blocks.end()) {
+        // Room for its return, which must not fail.
+        unused_->blocks.reserve(++unused_->made);
+      } else {
+        block = std::move(*found);
+        unused_->blocks.erase(found);
+      }
+    }
+    if (!block) block = std::make_unique<Block>(rows, columns);
+    return {block.release(), [unused = unused_](Block* released) {
+              const std::scoped_lock lock(unused->mutex);
+              unused->blocks.emplace_back(released);
+            }};
+  }
+
+ private:
+  struct Unused {
+    std::mutex mutex;
+    std::vector<std::unique_ptr<Block>> blocks;
+    std::size_t made = 0;
+  };
+  /// Blocks may outlive the pool.
+  std::shared_ptr<Unused> unused_ = std::make_shared<Unused>();
+};
+
+/// Blocks in a ScratchFile, one after the other, each row after row.
+template <typename Scalar>
+class ScratchBlocks : public KeptBlocks<Scalar> {
+ public:
+  using typename BlockSource<Scalar>::Block;
+
+  /// Throws OutputError.
+  ScratchBlocks(Eigen::Index row_count, const VertexPart& part)
+      : KeptBlocks<Scalar>(row_count, part) {}
+
+  std::shared_ptr<const Block> block(int b) const override { return read(b); }
+  void put_rows(int b, Eigen::Index row, const Block& values) override {
+    file_.write(byte_of(b, row), std::as_bytes(numbers_of(values)));
+  }
+  void put(int b, Block block) override { put_rows(b, 0, block); }
+  void change(int b, const std::function<void(Block&)>& change) override {
+    const auto block = read(b);
+    change(*block);
+    put_rows(b, 0, *block);
+  }
+  void release(int) override {}
+
+ private:
+  std::shared_ptr<Block> read(int b) const {
+    auto block = pool_.block(this->rows(), 3 * this->size(b));
+    file_.read(byte_of(b, 0), std::as_writable_bytes(numbers_of(*block)));
+    return block;
+  }
+  std::size_t byte_of(int b, Eigen::Index row) const {
+    const Eigen::Index before = this->rows() * 3 * this->first(b) + row * 3 * this->size(b);
+    return sizeof(Scalar) * static_cast<std::size_t>(before);
+  }
+
+  ScratchFile file_;
+  BlockPool<Scalar> pool_;
+};
+
+/// Displacements that are read anew for each use.
+class SequenceBlocks : public BlockSource<double> {
+ public:
+  SequenceBlocks(const SequencePart& sequence, const VertexPart& part, double scale)
+      : BlockSource(sequence.frames.frames(), part), sequence_(sequence), scale_(scale) {}
+
+  std::shared_ptr<const Block> block(int b) const override {
+    const Eigen::Index vertex = first(b), columns = 3 * size(b);
+    const auto rest = sequence_.rest.middleRows(part().first() + vertex, size(b));
+    const Eigen::Index at_once =
+        std::max<Eigen::Index>(1, kReadBytes / static_cast<Eigen::Index>(sizeof(double)) / columns);
+    auto block = pool_.block(rows(), columns);
+    Frames poses(std::min(at_once, rows()), columns);
+    for (Eigen::Index frame = 0; frame < rows(); frame += at_once) {
+      const Eigen::Index count = std::min(at_once, rows() - frame);
+      sequence_.frames.read_vertices(static_cast<int>(frame), static_cast<VertexIndex>(vertex),
+                                     FramesView(poses.data(), count, columns));
+      block->middleRows(frame, count) =
+          displaced(Eigen::Map<const Frames>(poses.data(), count, columns), 0, rest) / scale_;
+    }
+    return block;
+  }
+
+ private:
+  SequencePart sequence_;
+  double scale_;
+  BlockPool<double> pool_;
+};
+
+}  // namespace
+
+template <typename Scalar>
+std::unique_ptr<KeptBlocks<Scalar>> kept_blocks(MotionPlace place, Eigen::Index rows,
+                                                const VertexPart& part) {
+  if (place == MotionPlace::scratch) return std::make_unique<ScratchBlocks<Scalar>>(rows, part);
+  auto blocks = std::make_unique<VertexBlocks<Scalar>>(rows, part);
+  for (int b = 0; b < blocks->count(); ++b) (*blocks)[b].resize(rows, 3 * blocks->size(b));
+  return blocks;
+}
+
+template std::unique_ptr<KeptBlocks<double>> kept_blocks(MotionPlace, Eigen::Index,
+                                                         const VertexPart&);
+template std::unique_ptr<KeptBlocks<float>> kept_blocks(MotionPlace, Eigen::Index,
+                                                        const VertexPart&);
+
+std::unique_ptr<BlockSource<double>> read_displacements(const SequencePart& sequence,
+                                                        const VertexPart& part, double scale) {
+  return std::make_unique<SequenceBlocks>(sequence, part, scale);
+}
+
+std::unique_ptr<KeptBlocks<double>> kept_displacements(const SequencePart& sequence,
+                                                       const VertexPart& part, MotionPlace place,
+                                                       const Context& context) {
+  auto blocks = kept_blocks<double>(place, sequence.frames.frames(), part);
+  const auto put_frames = [&](int first, int count) {
+    const FrameBlock frames(sequence.frames, first, count);
+    for (int b = 0; b < blocks->count(); ++b) {
+      const auto rest = sequence.rest.middleRows(part.first() + blocks->first(b), blocks->size(b));
+      blocks->put_rows(b, first, displaced(frames.poses(), blocks->first(b), rest));
+    }
+  };
+  for_each_run(sequence.frames, put_frames, context);
+  return blocks;
+}
+
 namespace {
 
 /// Of a frame's displacement coordinates, in some vertices: one column each.
@@ -115,7 +284,7 @@ Motion scaled_motion(const SequencePart& sequence, MotionScale unit, const Reduc
     kept = kept_displacements(sequence, part, place, reduction.context());
   }
   const Eigen::MatrixXd spreads =
-      kept ? spreads_of(*kept, reduction) : spreads_of(SequenceBlocks(sequence, part), reduction);
+      spreads_of(kept ? *kept : *read_displacements(sequence, part), reduction);
   require_finite(spreads);
   require_motion(sequence.rest, spreads);
   const auto coordinates = static_cast<double>(sequence.rest.size());
@@ -138,7 +307,7 @@ Motion scaled_motion(const SequencePart& sequence, MotionScale unit, const Reduc
         "the frames are so far from the rest pose that their energy is not a finite number");
   }
   if (!kept) {
-    return {std::make_unique<SequenceBlocks>(sequence, part, scale), nullptr, scale, norm2};
+    return {read_displacements(sequence, part, scale), nullptr, scale, norm2};
   }
   const auto divide = [&kept, scale](int b) {
     kept->change(b, [scale](KeptBlocks<double>::Block& block) { block /= scale; });

@@ -2,11 +2,54 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
-#include "toolkit/mesh/near_tie.h"
+#include "toolkit/mesh/rounding.h"
 
 namespace mimetra {
+VertexPart::VertexPart(Eigen::Index mesh_vertices, int rank, int ranks)
+    : mesh_vertices_(mesh_vertices), rank_(rank), ranks_(ranks) {
+  if (rank < 0 || rank >= ranks) {
+    throw std::invalid_argument("rank " + std::to_string(rank) + " of " + std::to_string(ranks));
+  }
+  mesh_runs_ = std::min(kMostRuns, mesh_blocks());
+  runs_ = dealt_to(rank, ranks, mesh_runs_);
+  if (runs_.count() > 0) {
+    blocks_ = {mesh_blocks_of(runs_.first).first, mesh_blocks_of(runs_.end - 1).end};
+  }
+}
+
+Eigen::Index VertexPart::vertices() const {
+  return std::min(mesh_vertices_, blocks_.end * kBlock) - first();
+}
+
+IndexRange VertexPart::blocks_of(int run) const {
+  const IndexRange blocks = mesh_blocks_of(run);
+  return {blocks.first - blocks_.first, blocks.end - blocks_.first};
+}
+
+int VertexPart::owner(VertexIndex vertex) const {
+  const int block = static_cast<int>(vertex / kBlock);
+  return owner_of(owner_of(block, mesh_runs_, mesh_blocks()), ranks_, mesh_runs_);
+}
+
+int VertexPart::mesh_blocks() const {
+  return static_cast<int>((mesh_vertices_ + kBlock - 1) / kBlock);
+}
+
+IndexRange VertexPart::mesh_blocks_of(int run) const {
+  return dealt_to(run, mesh_runs_, mesh_blocks());
+}
+
+std::shared_ptr<const FrameSource> own_vertices(const FrameSource& sequence,
+                                                const VertexPart& part) {
+  const std::shared_ptr<const FrameSource> whole(std::shared_ptr<const FrameSource>(), &sequence);
+  return some_vertices(whole, static_cast<VertexIndex>(part.first()),
+                       static_cast<int>(part.vertices()));
+}
+
 namespace {
 
 // Values among which argmax() looks with all threads: for fewer, starting these takes longer.
@@ -114,6 +157,25 @@ std::vector<VertexIndex> Reduction::argmax(
     if (largest[k] > 0) result[k] = static_cast<VertexIndex>(lowest[k]);
   }
   return result;
+}
+
+VertexIndex strongest_vertex(const Eigen::Ref<const Eigen::VectorXd>& energies,
+                             const Eigen::VectorXd& weights) {
+  return strongest_vertex(energies, weights, Reduction(energies.size()));
+}
+
+VertexIndex strongest_vertex(const Eigen::Ref<const Eigen::VectorXd>& energies,
+                             const Eigen::VectorXd& weights, const Reduction& reduction) {
+  const auto of_block = [&](int b) -> Eigen::MatrixXd {
+    const Eigen::Index first = reduction.part().first_of(b), n = reduction.part().size_of(b);
+    if (weights.size() == 0) return energies.segment(first, n).transpose();
+    return energies.segment(first, n).cwiseProduct(weights.segment(first, n)).transpose();
+  };
+  return reduction.argmax(1, of_block).front();
+}
+
+Eigen::VectorXd vertex_energies(const Eigen::Ref<const Eigen::RowVectorXd>& component) {
+  return PositionsView(component.data(), component.size() / 3, 3).rowwise().squaredNorm();
 }
 
 }  // namespace mimetra

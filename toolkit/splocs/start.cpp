@@ -6,8 +6,6 @@
 #include <Eigen/Eigenvalues>
 
 #include "toolkit/mesh/parallel.h"
-#include "toolkit/splocs/vertex_energies.h"
-#include "toolkit/splocs/weights.h"
 
 namespace mimetra {
 namespace {

@@ -3,8 +3,7 @@
 #include <vector>
 
 #include "toolkit/splocs/decomposition_options.h"
-#include "toolkit/splocs/reduction.h"
-#include "toolkit/splocs/support_maps.h"
+#include "toolkit/splocs/updates.h"
 
 namespace mimetra {
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "geodesic/cgal_geodesics.h"
 #include "geodesic/exact_geodesics.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/splocs/surface_distances.h"
@@ -24,15 +25,24 @@ struct Geodesics {
   std::vector<VertexIndex> vertices_without_face;
 };
 
+/// One source after the other.
+template <typename Method>
+Geodesics one_at_a_time(const Positions& positions, const Triangles& triangles) {
+  const auto method = std::make_shared<const Method>(positions, triangles);
+  return {one_by_one([method](VertexIndex source) { return method->distances(source); }),
+          {},
+          1,
+          method->degenerate_triangles(),
+          method->vertices_without_face()};
+}
+
 Geodesics prepared(const Positions& positions, const Triangles& triangles, GeodesicMethod method) {
+  // CGAL's paths from several vertices of one triangle end in a failed assertion.
   if (method == GeodesicMethod::exact) {
-    const auto exact = std::make_shared<const geodesic::ExactGeodesics>(positions, triangles);
-    // CGAL's paths from several vertices of one triangle end in a failed assertion.
-    return {one_by_one([exact](VertexIndex source) { return exact->distances(source); }),
-            {},
-            1,
-            exact->degenerate_triangles(),
-            exact->vertices_without_face()};
+    return one_at_a_time<geodesic::ExactGeodesics>(positions, triangles);
+  }
+  if (method == GeodesicMethod::cgal) {
+    return one_at_a_time<geodesic::CgalGeodesics>(positions, triangles);
   }
   const geodesic::HeatOptions options{.intrinsic_delaunay = method == GeodesicMethod::heat};
   const auto heat = std::make_shared<const geodesic::HeatGeodesics>(positions, triangles, options);

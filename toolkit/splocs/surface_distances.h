@@ -19,7 +19,12 @@ using DistanceFunction = std::function<Eigen::MatrixXd(std::span<const VertexInd
 /// Asks `distances` (N) for one vertex after the other, from the calling thread.
 DistanceFunction one_by_one(std::function<Eigen::VectorXd(VertexIndex)> distances);
 
-enum class GeodesicMethod { heat, heat_direct, exact };
+enum class GeodesicMethod {
+  heat,         ///< HeatGeodesics
+  heat_direct,  ///< the same on the mesh's own triangles
+  exact,        ///< ExactGeodesics
+  cgal          ///< CgalGeodesics
+};
 
 /// As people choose it.
 constexpr std::string_view choice_name(GeodesicMethod value) {
@@ -30,6 +35,8 @@ constexpr std::string_view choice_name(GeodesicMethod value) {
       return "heat-direct";
     case GeodesicMethod::exact:
       return "exact";
+    case GeodesicMethod::cgal:
+      return "cgal";
   }
   return {};
 }

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "toolkit/splocs/vertex_part.h"
+#include "toolkit/splocs/reduction.h"
 
 namespace mimetra {
 

@@ -11,14 +11,13 @@
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/inspection.h"
-#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/mesh/rounding.h"
 #include "toolkit/model/ruled_least_squares.h"
 #include "toolkit/model/smooth_weights.h"
+#include "toolkit/model/smoothness.h"
 #include "toolkit/regions/regions.h"
 #include "toolkit/transfer/deformation_gradients.h"
-#include "toolkit/transfer/expression_edges.h"
-#include "toolkit/transfer/pairs.h"
-#include "toolkit/transfer/right_hand_side.h"
+#include "toolkit/transfer/vertex_pull.h"
 
 namespace mimetra {
 

@@ -34,9 +34,23 @@ Eigen::Matrix3d triangle_frame(const Eigen::Ref<const Positions>& positions,
                         positions.row(corners[2]));
 }
 
+HatGradients hat_gradients(const Positions& rest, const Triangles& triangles, int triangle) {
+  const Eigen::Matrix3d inverse = triangle_frame(rest, triangles, triangle).inverse();
+  HatGradients gradients;
+  gradients.col(1) = inverse.row(0).transpose();
+  gradients.col(2) = inverse.row(1).transpose();
+  gradients.col(0) = -gradients.col(1) - gradients.col(2);
+  return gradients;
+}
+
 double own_share(double quality) {
   if (!(quality >= kDegenerateQuality)) return 0;
   const double share = std::min(1.0, quality / kSoundQuality);
+  return share * share;
+}
+
+double target_share(double quality) {
+  const double share = own_share(quality);
   return share * share;
 }
 
@@ -202,6 +216,14 @@ Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> DeformationGradients::
     gradients.middleRows<3>(static_cast<Eigen::Index>(3 * s)) = gradient;
   }
   return gradients;
+}
+
+DeformationGradients gradients_between(const Positions& source_rest, const Triangles& triangles,
+                                       const Pairing* pairing, std::vector<int> selected,
+                                       const Triangles* joined) {
+  if (!pairing) return {source_rest, triangles, std::move(selected), joined};
+  return {source_rest, pairing->source_triangles(), pairing->triangles(), std::move(selected),
+          joined};
 }
 
 }  // namespace mimetra

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "toolkit/correspondence/correspondence.h"
+#include "toolkit/correspondence/pairing.h"
 #include "toolkit/mesh/mesh_sequence.h"
 
 namespace mimetra {
@@ -17,6 +17,11 @@ Eigen::Matrix3d triangle_frame(const Eigen::Vector3d& a, const Eigen::Vector3d& 
 Eigen::Matrix3d triangle_frame(const Eigen::Ref<const Positions>& positions,
                                const Triangles& triangles, int triangle);
 
+/// Gradients of the three hat functions of a triangle in its plane, one a column.
+using HatGradients = Eigen::Matrix3d;
+
+HatGradients hat_gradients(const Positions& rest, const Triangles& triangles, int triangle);
+
 /// Triangles of this quality (triangle_quality()) and above are sound: valid faces go down to 2e-2.
 /// Below, what a frame's noise makes of a gradient grows as 1 / quality.
 constexpr double kSoundQuality = 2e-2;
@@ -25,6 +30,10 @@ constexpr double kSoundQuality = 2e-2;
 /// below with the square of the quality, so that noise fades out with the triangle; nothing below
 /// kDegenerateQuality.
 double own_share(double quality);
+
+/// How much a triangle of a target counts. Its stiffness grows as 1 / quality^2 and its normal
+/// loses its sense: from sound to degenerate it fades out faster than that, without a jump.
+double target_share(double quality);
 
 /// The quality of row `triangle` of `triangles` at `positions`.
 double quality_of(const Eigen::Ref<const Positions>& positions, const Triangles& triangles,
@@ -85,5 +94,11 @@ class DeformationGradients {
   std::vector<Eigen::Matrix3d> inverse_frames_;  // of every triangle; the identity where unused
   int replaced_ = 0;
 };
+
+/// Gradients for triangles of a target; its `triangles` are the source's without a pairing (null).
+/// `joined` of the source.
+DeformationGradients gradients_between(const Positions& source_rest, const Triangles& triangles,
+                                       const Pairing* pairing, std::vector<int> selected,
+                                       const Triangles* joined = nullptr);
 
 }  // namespace mimetra

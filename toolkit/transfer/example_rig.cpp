@@ -1,17 +1,21 @@
 #include "toolkit/transfer/example_rig.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 
 #include "toolkit/mesh/parallel.h"
-#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/mesh/rounding.h"
 #include "toolkit/model/box_least_squares.h"
-#include "toolkit/transfer/plane_gradients.h"
+#include "toolkit/transfer/deformation_gradients.h"
+#include "toolkit/transfer/gradient_system.h"
 #include "toolkit/transfer/seams.h"
 
 namespace mimetra {
@@ -76,6 +80,103 @@ void check(const BlendshapeModel& transferred, const std::vector<RigExample>& ex
     is_given[*expression] = true;
   }
 }
+
+/// Displacement fields of a mesh and their gradients in the planes of its triangles, of which
+/// vertices are found again.
+///
+/// A gradient is 3 x 2, on an orthonormal basis of the triangle's plane: its norm and products are
+/// those of the 3 x 3 gradient, whose third direction says nothing.
+class PlaneGradients {
+ public:
+  /// Six numbers a triangle, column by column of its gradient.
+  static constexpr int kNumbers = 6;
+
+  /// `rest` N x 3, `triangles` M x 3. Slivers and triangles that `weld` (N) collapses fade out.
+  PlaneGradients(const Positions& rest, const Triangles& triangles, Weld weld)
+      : triangles_(triangles),
+        weld_(std::move(weld)),
+        counts_(triangles.rows(), 0),
+        hats_(triangles.rows(), Hats::Zero()) {
+    const Triangles welded = weld_.welded(triangles_);
+    for (int t = 0; t < triangles_.rows(); ++t) {
+      const auto corners = welded.row(t);
+      const bool collapses =
+          corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
+      const double count = collapses ? 0 : target_share(quality_of(rest, triangles_, t));
+      if (count == 0) continue;
+      counts_[t] = count;
+      const Eigen::Matrix3d frame = triangle_frame(rest, triangles_, t);
+      Gradient basis;
+      basis.col(0) = frame.col(0).normalized();
+      basis.col(1) = frame.col(2).cross(frame.col(0)).normalized();
+      hats_[t] = basis.transpose() * hat_gradients(rest, triangles_, t);
+    }
+  }
+
+  int triangles() const { return static_cast<int>(triangles_.rows()); }
+  const Weld& weld() const { return weld_; }
+  /// How much a triangle counts, 0 to 1.
+  const std::vector<double>& counts() const { return counts_; }
+
+  /// Gradients of fields (3N x D) at a triangle, 6 x D; 0 where it does not count.
+  Eigen::MatrixXd at(int triangle, const Eigen::MatrixXd& fields) const {
+    Eigen::MatrixXd gradients = Eigen::MatrixXd::Zero(kNumbers, fields.cols());
+    for (int corner = 0; corner < 3; ++corner) {
+      const auto here = fields.middleRows<3>(3 * Eigen::Index{triangles_(triangle, corner)});
+      gradients.topRows<3>() += hats_[triangle](0, corner) * here;
+      gradients.bottomRows<3>() += hats_[triangle](1, corner) * here;
+    }
+    return gradients;
+  }
+
+  /// Unknowns of vertices that are not fixed.
+  VertexUnknowns unknowns(const std::vector<bool>& fixed) const {
+    return number_unknowns(triangles_, counts_, fixed, weld_);
+  }
+
+  /// The field (3N) of the least squares of its gradients minus `gradients` (6M), 0 at `fixed`
+  /// vertices (N); a piece without any has its pin at 0, which `unknowns` names. Normal equations
+  /// sum_w (sum_i c_i h_iv . h_iw) d_w = sum_i c_i F_i h_iv. \pre vertices that are one are fixed
+  /// together
+  Eigen::VectorXd field_of(const Eigen::VectorXd& gradients, const VertexUnknowns& unknowns) const {
+    using Unknowns = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+    Triplets entries;
+    Unknowns pull = Unknowns::Zero(unknowns.count, 3);
+    for (int t = 0; t < triangles(); ++t) {
+      if (counts_[t] == 0) continue;
+      std::array<int, 3> of_corner;
+      for (int c = 0; c < 3; ++c) of_corner[c] = unknowns.of_vertex[triangles_(t, c)];
+      Eigen::Matrix3d hats = Eigen::Matrix3d::Zero();
+      hats.topRows<2>() = hats_[t];
+      add_products<3>(hats, counts_[t], of_corner, entries);
+      const Eigen::Map<const Gradient> gradient(gradients.data() + Eigen::Index{kNumbers} * t);
+      for (int c = 0; c < 3; ++c) {
+        if (of_corner[c] < 0) continue;
+        pull.row(of_corner[c]) += counts_[t] * (gradient * hats_[t].col(c)).transpose();
+      }
+    }
+    const geodesic::SparseFactor factor = factor_of(entries, unknowns.count);
+    Unknowns ordered(unknowns.count, 3);
+    for (int u = 0; u < unknowns.count; ++u) ordered.row(factor.order()[u]) = pull.row(u);
+    if (unknowns.count > 0) ordered = factor.solve<3>(std::move(ordered));
+    const auto vertices = static_cast<Eigen::Index>(unknowns.of_vertex.size());
+    Eigen::VectorXd field = Eigen::VectorXd::Zero(3 * vertices);
+    for (Eigen::Index v = 0; v < vertices; ++v) {
+      const int unknown = unknowns.of_vertex[v];
+      if (unknown >= 0) field.segment<3>(3 * v) = ordered.row(factor.order()[unknown]).transpose();
+    }
+    return field;
+  }
+
+ private:
+  using Gradient = Eigen::Matrix<double, 3, 2>;
+  using Hats = Eigen::Matrix<double, 2, 3>;
+
+  Triangles triangles_;
+  Weld weld_;
+  std::vector<double> counts_;
+  std::vector<Hats> hats_;
+};
 
 /// The paper's step A in the differences E_j from the transferred expressions, at one triangle:
 ///   min sum_s |R_s - sum_j a_sj E_j|^2 + sum_jk <E_j, (C^-1)_jk E_k>

@@ -6,9 +6,9 @@
 
 #include "toolkit/correspondence/closest_surface.h"
 #include "toolkit/mesh/alignment.h"
-#include "toolkit/mesh/inspection.h"
+#include "toolkit/mesh/measures.h"
 #include "toolkit/mesh/median.h"
-#include "toolkit/mesh/triangle_quality.h"
+#include "toolkit/mesh/surface.h"
 
 namespace mimetra {
 
@@ -113,19 +113,17 @@ FollowingParts::FollowingParts(Positions rest, const Triangles& triangles, const
 /// follow the vertices `carried`, or, if none are named, all of the other parts.
 void FollowingParts::find(const Triangles& triangles, const Weld& weld,
                           const std::vector<bool>& moves, std::vector<VertexIndex> carried) {
-  const Triangles welded = weld.welded(triangles);
-  const ConnectedComponents components =
-      connected_components(static_cast<int>(rest_.rows()), welded);
-  const auto part_of = [&](VertexIndex v) { return components.of_vertex[weld.representative[v]]; };
+  const ConnectedComponents components = connected_components(triangles, weld);
+  const std::vector<int>& part_of = components.of_vertex;
   std::vector<bool> part_moves(components.count, false), has_triangle(components.count, false);
   for (int t = 0; t < triangles.rows(); ++t) {
-    has_triangle[part_of(triangles(t, 0))] = true;
-    if (moves[t]) part_moves[part_of(triangles(t, 0))] = true;
+    has_triangle[part_of[triangles(t, 0)]] = true;
+    if (moves[t]) part_moves[part_of[triangles(t, 0)]] = true;
   }
   const bool takes_all = carried.empty();
   std::map<int, std::vector<VertexIndex>> others;
   for (VertexIndex v = 0; v < rest_.rows(); ++v) {
-    const int part = part_of(v);
+    const int part = part_of[v];
     if (takes_all && part_moves[part]) carried.push_back(v);
     if (part_moves[part] || !has_triangle[part]) continue;
     without_motion_[v] = true;
@@ -134,10 +132,11 @@ void FollowingParts::find(const Triangles& triangles, const Weld& weld,
   if (others.empty() || carried.empty()) return;
   size_ = box_diagonal(rest_(carried, Eigen::all));
   std::vector<int> moving;
-  for (int t = 0; t < welded.rows(); ++t) {
-    if (part_moves[part_of(triangles(t, 0))]) moving.push_back(t);
+  for (int t = 0; t < triangles.rows(); ++t) {
+    if (part_moves[part_of[triangles(t, 0)]]) moving.push_back(t);
   }
-  const ClosestSurface surface(rest_, with_area(rest_, welded(moving, Eigen::all)));
+  const Triangles welded = weld.welded(triangles(moving, Eigen::all));
+  const ClosestSurface surface(rest_, with_area(rest_, welded));
   for (auto& [number, vertices] : others) {
     if (!is_enclosed(vertices, rest_, surface) &&
         !lies_against(vertices, rest_, surface, kTouchingShare * size_)) {

@@ -5,11 +5,9 @@
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/parallel.h"
-#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/mesh/rounding.h"
 #include "toolkit/model/box_least_squares.h"
 #include "toolkit/regions/regions.h"
-#include "toolkit/transfer/expression_edges.h"
-#include "toolkit/transfer/pairs.h"
 
 namespace mimetra {
 

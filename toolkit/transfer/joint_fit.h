@@ -8,7 +8,7 @@
 #include "toolkit/mesh/context.h"
 #include "toolkit/model/blendshape_model.h"
 #include "toolkit/transfer/deformation_gradients.h"
-#include "toolkit/transfer/right_hand_side.h"
+#include "toolkit/transfer/vertex_pull.h"
 
 namespace mimetra {
 

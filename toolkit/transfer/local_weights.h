@@ -6,7 +6,7 @@
 #include "toolkit/correspondence/pairing.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/mesh/option.h"
-#include "toolkit/model/regional_animation.h"
+#include "toolkit/model/animation.h"
 #include "toolkit/transfer/edges.h"
 
 namespace mimetra {

@@ -8,8 +8,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "toolkit/mesh/near_tie.h"
-#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/mesh/rounding.h"
 #include "toolkit/transfer/blendshape_transfer.h"
 
 namespace mimetra {

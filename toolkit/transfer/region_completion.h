@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "toolkit/correspondence/pairing.h"
-#include "toolkit/regions/disc_search.h"
+#include "toolkit/regions/discs.h"
 #include "toolkit/regions/regions.h"
-#include "toolkit/transfer/expression_edges.h"
+#include "toolkit/transfer/edges.h"
 
 namespace mimetra {
 

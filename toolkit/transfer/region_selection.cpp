@@ -8,14 +8,13 @@
 #include <string>
 #include <utility>
 
-#include "toolkit/mesh/near_tie.h"
+#include <Eigen/Cholesky>
+
 #include "toolkit/mesh/parallel.h"
-#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/mesh/rounding.h"
 #include "toolkit/regions/regions.h"
 #include "toolkit/transfer/blendshape_transfer.h"
-#include "toolkit/transfer/expression_edges.h"
-#include "toolkit/transfer/pairs.h"
-#include "toolkit/transfer/wanted_change.h"
+#include "toolkit/transfer/deformation_gradients.h"
 
 namespace mimetra {
 
@@ -26,6 +25,50 @@ constexpr double kRounding = 1e-20;
 
 /// A share of the triangles times their number may miss a whole one by rounding.
 constexpr double kWholeTriangle = 1e-9;
+
+constexpr int kTrianglesPerPiece = 256;
+
+/// What eq. 10 asks of a target's triangles: the b of eq. 11, changes (Q_i - I) V_i of the edges of
+/// the selected triangles, six rows each as in edge_rows(), one column a frame (6 T x F, unit of
+/// the target). `gradients` are those of the target's triangles at the performance's rest pose.
+/// Throws what reading throws, and Cancelled.
+Eigen::MatrixXd wanted_change(const DeformationGradients& gradients, const BlendshapeModel& target,
+                              const FrameSource& performance, EdgeSum sum, const Context& context) {
+  const std::vector<int>& selected = gradients.selected();
+  const Eigen::Matrix2d factor = edge_factor(sum);
+  Eigen::MatrixXd wanted(6 * selected.size(), performance.frames());
+  const auto fill_frame = [&](int f) {
+    const FrameBlock block(performance, f, 1);
+    const auto q = gradients(block.frame(0));
+    for (std::size_t s = 0; s < selected.size(); ++s) {
+      const auto row = static_cast<Eigen::Index>(s);
+      const Edges edges =
+          edges_of(target.neutral(), target.triangles(), selected[s]).lazyProduct(factor);
+      const Eigen::Matrix3d change = q.middleRows<3>(3 * row) - Eigen::Matrix3d::Identity();
+      const Edges changed = change.lazyProduct(edges);
+      wanted.col(f).segment<6>(6 * row) = changed.reshaped();
+    }
+  };
+  parallel_for(performance.frames(), fill_frame, context);
+  return wanted;
+}
+
+/// What weights of the target's expressions (F x D) leave of the wanted change of some triangles:
+/// the residual r = b - A beta (6 T x F). Throws Cancelled.
+Eigen::MatrixXd unmet_change(Eigen::MatrixXd wanted, std::span<const int> triangles,
+                             const BlendshapeModel& target, const Eigen::MatrixXd& weights,
+                             EdgeSum sum, const Context& context) {
+  fix_product_blocking();
+  const auto count = static_cast<int>(triangles.size());
+  const auto subtract = [&](int piece) {
+    const int first = piece * kTrianglesPerPiece;
+    const int size = std::min(kTrianglesPerPiece, count - first);
+    wanted.middleRows(6 * first, 6 * size).noalias() -=
+        edge_rows(target, triangles.subspan(first, size), sum) * weights.transpose();
+  };
+  parallel_for((count + kTrianglesPerPiece - 1) / kTrianglesPerPiece, subtract, context);
+  return wanted;
+}
 
 /// s^2, of the sum of squares of what is wanted.
 double variance_of(const Eigen::MatrixXd& unmet, double wanted) {
@@ -64,6 +107,32 @@ std::vector<std::vector<int>> over_each(const Pairing* pairing, int triangles) {
 }
 
 }  // namespace
+
+Sight Sight::none(Eigen::Index expressions, Eigen::Index frames) {
+  return {Eigen::MatrixXd::Zero(expressions, expressions),
+          Eigen::MatrixXd::Zero(expressions, frames)};
+}
+
+Sight& Sight::operator+=(const Sight& more) {
+  gram += more.gram;
+  pull += more.pull;
+  return *this;
+}
+
+DiscChoice::DiscChoice(Eigen::MatrixXd gram, double variance, double noise)
+    : gram_(std::move(gram)),
+      ridge_(kRidge * gram_.diagonal().mean()),
+      variance_(noise * variance) {}
+
+double DiscChoice::criterion(const Sight& of_regions) const {
+  fix_product_blocking();
+  Eigen::MatrixXd system = of_regions.gram;
+  system.diagonal().array() += ridge_;
+  const Eigen::LLT<Eigen::MatrixXd> factor(system);
+  const Eigen::MatrixXd shift = factor.solve(of_regions.pull);
+  const double bias = shift.cwiseProduct(gram_ * shift).sum();
+  return bias / static_cast<double>(shift.cols()) + variance_ * factor.solve(gram_).trace();
+}
 
 /// The search: what has been chosen, and what each disc would add.
 class RegionSelection::Greedy {

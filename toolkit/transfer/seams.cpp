@@ -9,12 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "toolkit/mesh/diameter.h"
-#include "toolkit/mesh/edge_graph.h"
+#include "toolkit/mesh/disjoint_sets.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/triangle_quality.h"
+#include "toolkit/mesh/measures.h"
+#include "toolkit/mesh/surface.h"
 #include "toolkit/transfer/deformation_gradients.h"
-#include "toolkit/transfer/pairs.h"
 
 namespace mimetra {
 
@@ -70,8 +69,10 @@ class PlacesOverPairs {
                   const std::vector<VertexIndex>& moves_as, const Context& context)
       : at_source_(staying_together(source, Weld::exact(source.rest()),
                                     kRoundingShare * source.diameter(), context)),
-        source_(source.rest(), at_source_.welded(source.triangles())),
-        target_(target_rest, target_triangles),
+        source_rest_(source.rest()),
+        target_rest_(target_rest),
+        source_(source.triangles(), at_source_),
+        target_(static_cast<int>(target_rest.rows()), target_triangles),
         pairing_(pairing),
         moves_as_(moves_as) {}
 
@@ -81,19 +82,19 @@ class PlacesOverPairs {
     double reach = 0;
     for (const VertexIndex v : place) {
       std::vector<VertexIndex>& of_vertex = carriers.emplace_back();
-      reach = std::max(reach, target_.longest_edge(v));
+      reach = std::max(reach, longest_edge(target_, target_rest_, v));
       for (const auto& carrier : pairing_.carriers(moves_as_[v])) {
         of_vertex.push_back(at_source_.representative[carrier.vertex]);
       }
     }
     double longest = 0;
     for (const VertexIndex carrier : carriers.front()) {
-      longest = std::max(longest, source_.longest_edge(carrier));
+      longest = std::max(longest, longest_edge(source_, source_rest_, carrier));
     }
     reach = kNearEdges * (reach + longest);
     std::vector<VertexIndex> lowest = place;
     for (std::size_t i = 0; i + 1 < place.size(); ++i) {
-      const auto near = source_.within(reach, carriers[i]);
+      const auto near = within_reach(source_, source_rest_, reach, carriers[i]);
       for (std::size_t j = i + 1; j < place.size(); ++j) {
         const bool is_one =
             carriers[i].empty()
@@ -111,7 +112,8 @@ class PlacesOverPairs {
   }
 
   Weld at_source_;
-  EdgeGraph source_, target_;
+  const Positions &source_rest_, &target_rest_;
+  Surface source_, target_;
   const Pairing& pairing_;
   const std::vector<VertexIndex>& moves_as_;
 };
@@ -131,8 +133,7 @@ std::vector<VertexIndex> lowest_near(const std::vector<VertexIndex>& place, cons
 /// Vertices that are joined, by and by.
 class Joined {
  public:
-  explicit Joined(std::vector<bool> on)
-      : on_(std::move(on)), weld_(Weld::none(static_cast<int>(on_.size()))) {}
+  explicit Joined(std::vector<bool> on) : on_(std::move(on)), sets_(static_cast<int>(on_.size())) {}
 
   /// Those of one place (N, -1 for none), each with the lowest that `lowest_of` tells.
   template <typename LowestOf>
@@ -144,31 +145,22 @@ class Joined {
     for (const auto& [name, place] : places) {
       if (place.size() == 1) continue;
       const std::vector<VertexIndex> lowest = lowest_of(place);
-      for (std::size_t i = 0; i < place.size(); ++i) join(lowest[i], place[i]);
+      for (std::size_t i = 0; i < place.size(); ++i) sets_.join(lowest[i], place[i]);
     }
   }
 
-  Weld weld() && {
+  Weld weld() {
+    Weld weld = Weld::none(static_cast<int>(on_.size()));
     for (VertexIndex v = 0; v < std::ssize(on_); ++v) {
-      weld_.representative[v] = root(v);
-      if (weld_.representative[v] != v) ++weld_.count;
+      weld.representative[v] = sets_.lowest(v);
+      if (weld.representative[v] != v) ++weld.count;
     }
-    return std::move(weld_);
+    return weld;
   }
 
  private:
-  VertexIndex root(VertexIndex v) const {
-    while (weld_.representative[v] != v) v = weld_.representative[v];
-    return v;
-  }
-
-  void join(VertexIndex a, VertexIndex b) {
-    const VertexIndex one = root(a), other = root(b);
-    weld_.representative[std::max(one, other)] = std::min(one, other);
-  }
-
   std::vector<bool> on_;
-  Weld weld_;
+  DisjointSets sets_;
 };
 
 /// Vertices of a target that are at one place of it and near to each other in the source, or the
@@ -198,7 +190,7 @@ Weld near_in_both(const Positions& place_at_source, double near_at_source,
   joined.add(at_target.representative,
              [&](const auto& place) { return lowest_near(place, by_source); });
   joined.add(at_source, [&](const auto& place) { return lowest_near(place, by_target); });
-  return std::move(joined).weld();
+  return joined.weld();
 }
 
 /// A target's rest pose whose vertices are moved as what carries them.
@@ -282,7 +274,7 @@ Weld closed_seams(const FrameSource& source, const Positions& target_rest,
     }
     return over_pairs->lowest_of(place);
   });
-  return std::move(joined).weld();
+  return joined.weld();
 }
 
 }  // namespace mimetra

@@ -8,7 +8,6 @@
 #include "toolkit/mesh/surface_parts.h"
 #include "toolkit/transfer/deformation_gradients.h"
 #include "toolkit/transfer/edges.h"
-#include "toolkit/transfer/gradient_system.h"
 
 namespace mimetra {
 

@@ -1,22 +1,112 @@
 #include "toolkit/transfer/transfer_error.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
+#include <numbers>
+#include <span>
 #include <stdexcept>
 #include <string>
 
 #include <Eigen/Geometry>
 
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/triangle_quality.h"
+#include "toolkit/mesh/measures.h"
+#include "toolkit/mesh/surface.h"
 #include "toolkit/regions/regions.h"
-#include "toolkit/transfer/border_crease.h"
 #include "toolkit/transfer/deformation_gradients.h"
-#include "toolkit/transfer/edges.h"
-#include "toolkit/transfer/pairs.h"
 #include "toolkit/transfer/soft_border.h"
 
 namespace mimetra {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+Eigen::Vector3d normal_of(const Edges& edges) {
+  return edges.col(0).cross(edges.col(1));
+}
+
+/// By which the second normal is turned around the edge against the first, in (-pi, pi]; none
+/// where one is 0.
+std::optional<double> angle_between(const Eigen::Vector3d& first, const Eigen::Vector3d& second,
+                                    const Eigen::Vector3d& edge) {
+  if (first.squaredNorm() == 0 || second.squaredNorm() == 0) return {};
+  const Eigen::Vector3d axis = first.cross(second);
+  const double angle = std::atan2(axis.norm(), first.dot(second));
+  return axis.dot(edge) < 0 ? -angle : angle;
+}
+
+/// The angle between -pi and pi that is as far as another.
+double turned(double angle) {
+  if (angle > kPi) return angle - 2 * kPi;
+  return angle <= -kPi ? angle + 2 * kPi : angle;
+}
+
+/// The edge from corner k to the next one, in [b - a, c - a].
+Eigen::Vector2d side_of(int corner) {
+  const std::array<Eigen::Vector2d, 3> sides = {Eigen::Vector2d(1, 0), Eigen::Vector2d(-1, 1),
+                                                Eigen::Vector2d(0, -1)};
+  return sides[corner];
+}
+
+}  // namespace
+
+BorderCrease::BorderCrease(const Positions& rest, const Triangles& triangles,
+                           const Eigen::VectorXd& weights, const std::vector<bool>& counts)
+    : triangles_(triangles) {
+  if (weights.size() == 0 || weights.minCoeff() == weights.maxCoeff()) return;
+  std::vector<bool> takes_part = counts;
+  for (int t = 0; t < triangles.rows(); ++t) {
+    if (quality_of(rest, triangles, t) < kDegenerateQuality) takes_part[t] = false;
+  }
+  const Surface surface(static_cast<int>(rest.rows()), triangles);
+  surface.for_each_edge([&](std::span<const int> all_sides) {
+    std::vector<int> sides;
+    std::ranges::copy_if(all_sides, std::back_inserter(sides),
+                         [&](int side) { return takes_part[side / 3]; });
+    if (sides.size() != 2) return;
+    const int first = sides[0] / 3, second = sides[1] / 3;
+    const double change = std::abs(weights[first] - weights[second]);
+    if (change == 0) return;
+    // Both along the edge as the first triangle has it.
+    const int corner = sides[0] % 3, corner_of_second = sides[1] % 3;
+    const VertexIndex from = triangles(first, corner), to = triangles(first, (corner + 1) % 3);
+    const Eigen::Vector2d in_second = side_of(corner_of_second);
+    const bool is_opposite = triangles(second, corner_of_second) != from;
+    const Eigen::Vector3d edge = (rest.row(to) - rest.row(from)).transpose();
+    const auto angle = angle_between(normal_of(edges_of(rest, triangles, first)),
+                                     normal_of(edges_of(rest, triangles, second)), edge);
+    hinges_.push_back({first, second, side_of(corner),
+                       is_opposite ? Eigen::Vector2d(-in_second) : in_second, change * edge.norm(),
+                       angle.value_or(0)});
+  });
+}
+
+BorderCrease::Excess BorderCrease::operator()(const std::vector<Edges>& wanted,
+                                              const PositionsView& pose) const {
+  Excess excess;
+  double squares = 0, weights = 0;
+  for (const Hinge& hinge : hinges_) {
+    const Edges first = edges_of(pose, triangles_, hinge.first);
+    const Edges second = edges_of(pose, triangles_, hinge.second);
+    const Eigen::Vector3d found_edge = first * hinge.in_first;
+    const auto found = angle_between(normal_of(first), normal_of(second), found_edge);
+    const Edges &one = wanted[hinge.first], &other = wanted[hinge.second];
+    const Eigen::Vector3d wanted_edge = one * hinge.in_first + other * hinge.in_second;
+    const auto asked = angle_between(normal_of(one), normal_of(other), wanted_edge);
+    if (!found || !asked) continue;
+    const double bend = turned(*found - hinge.at_rest), due = turned(*asked - hinge.at_rest);
+    const double same_way = std::max(0.0, bend < 0 ? -due : due);
+    const double degrees = std::max(0.0, std::abs(bend) - same_way) * 180 / kPi;
+    squares += hinge.weight * degrees * degrees;
+    weights += hinge.weight;
+    excess.largest = std::max(excess.largest, degrees);
+  }
+  if (weights > 0) excess.rms = std::sqrt(squares / weights);
+  return excess;
+}
 
 namespace {
 

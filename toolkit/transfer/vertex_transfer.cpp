@@ -16,12 +16,9 @@
 #include "toolkit/transfer/deformation_gradients.h"
 #include "toolkit/transfer/following_parts.h"
 #include "toolkit/transfer/gradient_system.h"
-#include "toolkit/transfer/pairs.h"
 #include "toolkit/transfer/seams.h"
-#include "toolkit/transfer/smooth_edges.h"
 #include "toolkit/transfer/soft_border.h"
 #include "toolkit/transfer/vertex_pull.h"
-#include "toolkit/transfer/vertex_unknowns.h"
 
 namespace mimetra {
 
@@ -184,9 +181,7 @@ VertexTransfer::State::State(const Positions& source, const Positions& target,
   // To find neighbours across seams.
   const Triangles joined = welded_source(welded, options.weld, pairing);
   const DeformationGradients gradients =
-      pairing ? DeformationGradients(source_rest, pairing->source_triangles(), pairing->triangles(),
-                                     solved, &joined)
-              : DeformationGradients(source_rest, triangles, solved, &joined);
+      gradients_between(source_rest, triangles, pairing, solved, &joined);
   in_l = mask_of(selected, triangles.rows());
   degenerate_source = gradients.replaced();
   weigh();

@@ -8,22 +8,25 @@ namespace mimetra {
 
 namespace {
 
-std::mutex changing;
-int living = 0;
-int before = 0;
+/// Of the process.
+struct Silence {
+  std::mutex changing;
+  int living = 0;
+  int before = 0;
+} silence;
 
 }  // namespace
 
 SilentVtk::SilentVtk() {
-  const std::lock_guard lock(changing);
-  if (living++ > 0) return;
-  before = vtkObject::GetGlobalWarningDisplay();
+  const std::lock_guard lock(silence.changing);
+  if (silence.living++ > 0) return;
+  silence.before = vtkObject::GetGlobalWarningDisplay();
   vtkObject::GlobalWarningDisplayOff();
 }
 
 SilentVtk::~SilentVtk() {
-  const std::lock_guard lock(changing);
-  if (--living == 0) vtkObject::SetGlobalWarningDisplay(before);
+  const std::lock_guard lock(silence.changing);
+  if (--silence.living == 0) vtkObject::SetGlobalWarningDisplay(silence.before);
 }
 
 }  // namespace mimetra

@@ -1,9 +1,132 @@
 #include "toolkit/vtk/vtk_formats.h"
 
-#include "toolkit/operations/formats.h"
-#include "toolkit/vtk/vtp_formats.h"
+#include <algorithm>
+
+#include "toolkit/io/frame_files.h"
+#include "toolkit/io/regions_file.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/operations/bound_parameters.h"
+#include "toolkit/operations/colors.h"
+#include "toolkit/operations/format.h"
+#include "toolkit/operations/sequence_parameters.h"
+#include "toolkit/vtk/vtp_series.h"
 
 namespace mimetra {
+
+namespace {
+
+BoundParameters<VtpOptions> vtp_parameters() {
+  BoundParameters<VtpOptions> list;
+  return list.add("compress", VtpOptions::kCompression,
+                  "compression of .vtp: fast (LZ4) or small (zlib)");
+}
+
+std::vector<std::filesystem::path> write(const FieldSequence& fields, const WriteRequest& request,
+                                         const Context& context) {
+  VtpOptions options = vtp_parameters().read(request.parameters);
+  options.overwrite = request.overwrite;
+  options.inputs = request.inputs;
+  options.together = request.together;
+  return write_with_extra(
+      request, [&] { return write_vtp_series(fields, request.target, options, context); });
+}
+
+/// Throws MismatchError where frames would be left out.
+void check_frame_count(const FrameSource& frames, const std::filesystem::path& target) {
+  if (frames.frames() == 1 || lower_extension(target) != ".vtp") return;
+  throw MismatchError(target.string() + ": holds one frame, and the sequence has " +
+                      std::to_string(frames.frames()) +
+                      "; write a .pvd, or take one by option 'frames'");
+}
+
+std::vector<std::filesystem::path> write_sequence_data(const Data& data,
+                                                       const WriteRequest& request,
+                                                       const Context& context) {
+  FieldSequence sequence = std::get<FieldSequence>(data);
+  check_frame_count(*sequence.frames, request.target);
+  show_displacement(sequence);
+  return write(sequence, request, context);
+}
+
+ReadValue read_sequence_data(const std::string& text, const ReadRequest& request,
+                             const Context& context) {
+  const SequenceSource source = frame_parameters().read(request.parameters);
+  const auto selected = [&](int count) { return selected_frames(source.frames, count); };
+  std::vector<std::string> notes;
+  const Context noting =
+      context.with_notes([&](const Note& note) { notes.push_back(text + ": " + note.text); });
+  const VtpReadOptions options{.selected = selected, .fields = request.fields};
+  FieldSequence read = request.may_stream ? open_vtp_series(text, options, noting)
+                                          : read_vtp_series(text, options, noting);
+  check_rate(text, read.frames->known_times(), source);
+  // Chosen frames may lie far apart.
+  const std::string odd = source.frames ? "" : note_on_steps(read.frames->known_times());
+  if (!odd.empty()) noting.note(odd);
+  return {{text, std::move(read)}, vtp_series_files(text), std::move(notes)};
+}
+
+std::vector<std::filesystem::path> write_region_data(const Data& data, const WriteRequest& request,
+                                                     const Context& context) {
+  FieldSequence shown = std::get<RegionData>(data).fields;
+  if (shown.frames->frames() > 0) {
+    const auto region = std::ranges::find(shown.fields, "region", &Field::name);
+    if (region != shown.fields.end() && region->values.rows() == shown.frames->vertices()) {
+      shown.fields.push_back(region_color_field(*region, shown.frames->connectivity()));
+    }
+    return write(shown, request, context);
+  }
+  throw MismatchError(request.target.string() +
+                      ": the regions come without a mesh to show them on; write .json or .csv");
+}
+
+ReadValue read_region_data(const std::string& text, const ReadRequest& request, const Context&) {
+  return {{text, RegionData{region_of_mask(text, read_vtp_field(text, "roi"),
+                                           find_vtp_field(text, "weight"), request.vertices,
+                                           *request.triangles),
+                            {}}},
+          {text}};
+}
+
+}  // namespace
+
+void add_vtp(OperationTable& table) {
+  const std::vector<Parameter> reading = frame_parameters().declared();
+  const std::vector<Parameter> writing = vtp_parameters().declared();
+  Format series{.name = "ParaView time series",
+                .kind = DataKind::sequence,
+                .extensions = {".pvd"},
+                .reading = reading,
+                .read = read_sequence_data,
+                .writing = writing,
+                .write = write_sequence_data,
+                .fields = true,
+                .displacements = true,
+                .holds = [](const Parameters&) {
+                  return HeldParts{.polygons = true, .exact_positions = false};
+                }};
+  table.add(series);
+  series.name = "VTK mesh of one frame";
+  series.extensions = {".vtp"};
+  table.add(series);
+  table.add(Format{.name = "list of .vtp files",
+                   .kind = DataKind::sequence,
+                   .extensions = {".series"},
+                   .reading = reading,
+                   .read = read_sequence_data,
+                   .fields = true});
+  table.add(Format{.name = "ParaView time series with region fields",
+                   .kind = DataKind::regions,
+                   .extensions = {".pvd"},
+                   .writing = writing,
+                   .write = write_region_data});
+  table.add(Format{.name = "VTK mesh with region fields",
+                   .kind = DataKind::regions,
+                   .extensions = {".vtp"},
+                   .read = read_region_data,
+                   .writing = writing,
+                   .write = write_region_data});
+}
 
 void add_vtk(OperationTable& table) {
   add_vtp(table);

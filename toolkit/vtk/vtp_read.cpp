@@ -13,14 +13,13 @@
 #include <vtkXMLPolyDataReader.h>
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/binary_file.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/json_text.h"
-#include "toolkit/io/opened_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/face_order.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/vtk/displaced_rest.h"
 #include "toolkit/vtk/poly_data.h"
 #include "toolkit/vtk/silent_vtk.h"
 #include "toolkit/vtk/vtp_header.h"

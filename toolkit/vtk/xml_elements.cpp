@@ -13,10 +13,6 @@ namespace {
 
 constexpr std::size_t kDeepestXml = 32;
 
-bool is_space(char c) {
-  return is_blank(c) || c == '\n';
-}
-
 class XmlWalk {
  public:
   XmlWalk(const std::string& path, std::string_view text)
@@ -63,12 +59,12 @@ class XmlWalk {
   }
 
   void skip_spaces() {
-    while (is_space(here())) ++at_;
+    while (ends_word(here())) ++at_;
   }
 
   std::string word() {
     const std::size_t first = at_;
-    while (!is_space(here()) &&
+    while (!ends_word(here()) &&
            std::string_view("=/>\"'<").find(here()) == std::string_view::npos) {
       ++at_;
     }

@@ -52,7 +52,7 @@ const delimiter = 'viewer';
 if (script.includes(`)${delimiter}"`)) throw new Error('the bundle holds the literal\'s delimiter');
 const pieces = Buffer.from(script, 'utf8').toString('latin1').match(/[^]{1,15000}/g);
 const literals = pieces.map((piece) => `R"${delimiter}(${piece})${delimiter}"`).join('\n');
-writeFileSync(output, Buffer.from(`#include "toolkit/report/viewer_script.h"
+writeFileSync(output, Buffer.from(`#include "toolkit/report/viewer_data.h"
 
 namespace mimetra {
 

@@ -1,4 +1,4 @@
-#include "toolkit/report/viewer_script.h"
+#include "toolkit/report/viewer_data.h"
 
 namespace mimetra {
 

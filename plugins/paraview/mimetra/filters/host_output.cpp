@@ -12,7 +12,7 @@
 #include <vtkStringArray.h>
 #include <vtkTable.h>
 
-#include "toolkit/operations/json.h"
+#include "toolkit/operations/reports.h"
 #include "toolkit/vtk/poly_data.h"
 
 using namespace mimetra;

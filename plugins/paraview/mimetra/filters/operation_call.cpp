@@ -5,7 +5,7 @@
 #include "plugins/c/plugins.h"
 #include "plugins/paraview/mimetra/filters/filter_proxies.h"
 #include "toolkit/pipeline/analysis.h"
-#include "toolkit/vtk/vtp_formats.h"
+#include "toolkit/vtk/vtk_formats.h"
 
 using namespace mimetra;
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "toolkit/operations/data.h"
-#include "toolkit/vtk/displaced_rest.h"
+#include "toolkit/vtk/poly_data.h"
 
 class vtkDataObject;
 class vtkPolyData;

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "toolkit/io/json_text.h"
+
+/// The JSON of a glTF file, and the buffers that it names. Internal to the reader.
+namespace mimetra {
+
+/// One value of the file, and where it stands, for messages: "accessors[3].sparse". What is not
+/// as expected throws IoError.
+class GltfValue {
+ public:
+  GltfValue(const std::string& path, std::string where, const Json& json);
+
+  [[noreturn]] void fail(const std::string& message) const;
+
+  bool has(const char* name) const;
+  bool is_array() const;
+  bool is_text() const;
+  GltfValue at(const char* name) const;
+  /// The values of an array; none where it is not there.
+  std::vector<GltfValue> list(const char* name) const;
+  std::vector<GltfValue> items() const;
+
+  std::size_t count() const;
+  std::size_t count(const char* name) const { return at(name).count(); }
+  std::size_t count_or(const char* name, std::size_t fallback) const;
+
+  /// The number of something that there are `size` of.
+  std::size_t index(std::size_t size) const;
+  std::size_t index(const char* name, std::size_t size) const { return at(name).index(size); }
+  std::optional<std::size_t> maybe_index(const char* name, std::size_t size) const;
+
+  double number() const;
+  std::vector<double> numbers(const char* name) const;
+  template <std::size_t Size>
+  std::array<double, Size> numbers_or(const char* name, std::array<double, Size> values) const {
+    if (!has(name)) return values;
+    const GltfValue given = at(name);
+    const std::vector<GltfValue> items = given.items();
+    if (items.size() != Size) {
+      given.fail("has " + std::to_string(items.size()) + " numbers, expected " +
+                 std::to_string(Size));
+    }
+    for (std::size_t i = 0; i < Size; ++i) values[i] = items[i].number();
+    return values;
+  }
+
+  std::string text() const;
+  std::string text_or(const char* name, const std::string& fallback) const;
+  /// The same as a name, which may be copied many times.
+  std::string name() const;
+  std::string name_or_nothing() const { return has("name") ? at("name").name() : std::string(); }
+
+  bool flag(const char* name) const;
+
+  std::optional<GltfValue> extension(const char* name) const;
+
+ private:
+  const Json& object() const;
+
+  const std::string* path_;
+  std::string where_;
+  const Json* json_;
+};
+
+struct GltfBuffer {
+  std::string bytes;
+  std::optional<std::filesystem::path> file;  ///< none for bytes that stand in the glTF file itself
+  std::string missing = {};                   ///< what to say where there is no such file
+};
+
+/// The buffer that `uri` of the glTF file `path` names: base64 data, or a file in the folder of
+/// `path`; links may lead to the folder that `path` itself leads to. Throws IoError, also for what
+/// lies elsewhere.
+GltfBuffer read_gltf_buffer(const std::string& path, const std::string& uri);
+
+}  // namespace mimetra

@@ -1,0 +1,408 @@
+#include "toolkit/mesh/surface.h"
+
+#include <algorithm>
+#include <compare>
+#include <functional>
+#include <queue>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "toolkit/mesh/disjoint_sets.h"
+
+namespace mimetra {
+namespace {
+
+/// The corners of faces, face after face. Corner c is also the side from it to the next corner.
+class Corners {
+ public:
+  Corners(int vertices, std::vector<VertexIndex> vertex, std::vector<int> offsets)
+      : vertex_(std::move(vertex)), offsets_(std::move(offsets)), face_(vertex_.size()) {
+    for (int face = 0; face < faces(); ++face) {
+      for (int c = first(face); c < first(face + 1); ++c) {
+        face_[at(c)] = face;
+        if (vertex_[at(c)] >= 0 && vertex_[at(c)] < vertices) continue;
+        throw std::invalid_argument("triangle " + std::to_string(face) + " uses vertex " +
+                                    std::to_string(vertex_[at(c)]) + ", expected 0 to " +
+                                    std::to_string(vertices - 1));
+      }
+    }
+  }
+
+  int count() const { return static_cast<int>(vertex_.size()); }
+  int faces() const { return static_cast<int>(offsets_.size()) - 1; }
+  int first(int face) const { return offsets_[at(face)]; }
+  int face(int c) const { return face_[at(c)]; }
+  VertexIndex from(int c) const { return vertex_[at(c)]; }
+  VertexIndex to(int c) const { return vertex_[at(next(c))]; }
+  int next(int c) const { return c + 1 < first(face(c) + 1) ? c + 1 : first(face(c)); }
+  int previous(int c) const { return c > first(face(c)) ? c - 1 : first(face(c) + 1) - 1; }
+
+  bool repeats_vertex(int face) const {
+    std::vector<VertexIndex> around(vertex_.begin() + first(face),
+                                    vertex_.begin() + first(face + 1));
+    std::ranges::sort(around);
+    return std::ranges::adjacent_find(around) != around.end();
+  }
+
+  /// Lets the face run the other way round, from the same first corner.
+  void turn(int face) {
+    std::reverse(vertex_.begin() + first(face) + 1, vertex_.begin() + first(face + 1));
+  }
+  /// What side `c` is called once its face is turned.
+  int turned(int c) const { return first(face(c)) + first(face(c) + 1) - 1 - c; }
+
+ private:
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+  std::vector<VertexIndex> vertex_;
+  std::vector<int> offsets_, face_;
+};
+
+std::vector<int> faces_that_repeat_a_vertex(const Corners& corners) {
+  std::vector<int> faces;
+  for (int face = 0; face < corners.faces(); ++face) {
+    if (corners.repeats_vertex(face)) faces.push_back(face);
+  }
+  return faces;
+}
+
+/// Sides by their edges.
+struct SortedSides {
+  std::vector<int> sides, first_of_edge;
+};
+
+SortedSides sorted_sides(const Corners& corners, const std::vector<int>& left_out) {
+  struct Side {
+    VertexIndex low, high;
+    int corner;
+    auto operator<=>(const Side&) const = default;
+  };
+  std::vector<Side> sides;
+  sides.reserve(static_cast<std::size_t>(corners.count()));
+  auto skipped = left_out.begin();
+  for (int face = 0; face < corners.faces(); ++face) {
+    if (skipped != left_out.end() && *skipped == face) {
+      ++skipped;
+      continue;
+    }
+    for (int c = corners.first(face); c < corners.first(face + 1); ++c) {
+      const auto [low, high] = std::minmax({corners.from(c), corners.to(c)});
+      sides.push_back({low, high, c});
+    }
+  }
+  std::ranges::sort(sides);
+  SortedSides sorted;
+  sorted.sides.reserve(sides.size());
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (i == 0 || sides[i].low != sides[i - 1].low || sides[i].high != sides[i - 1].high) {
+      sorted.first_of_edge.push_back(static_cast<int>(i));
+    }
+    sorted.sides.push_back(sides[i].corner);
+  }
+  sorted.first_of_edge.push_back(static_cast<int>(sides.size()));
+  return sorted;
+}
+
+/// The other side of each edge that exactly two faces share; -1 elsewhere.
+std::vector<int> twins_of(const Corners& corners, const SortedSides& sorted) {
+  std::vector<int> twin(static_cast<std::size_t>(corners.count()), -1);
+  for (std::size_t e = 0; e + 1 < sorted.first_of_edge.size(); ++e) {
+    const int first = sorted.first_of_edge[e];
+    if (sorted.first_of_edge[e + 1] - first != 2) continue;
+    const int a = sorted.sides[static_cast<std::size_t>(first)];
+    const int b = sorted.sides[static_cast<std::size_t>(first) + 1];
+    twin[static_cast<std::size_t>(a)] = b;
+    twin[static_cast<std::size_t>(b)] = a;
+  }
+  return twin;
+}
+
+/// Which faces must be turned so that neighbours run the same way round; the lowest of those that
+/// hang together stays as it is.
+std::vector<int> faces_to_turn(const Corners& corners, const std::vector<int>& twin) {
+  const auto faces = static_cast<std::size_t>(corners.faces());
+  std::vector<bool> is_turned(faces, false), seen(faces, false);
+  std::vector<int> open;
+  for (int seed = 0; seed < corners.faces(); ++seed) {
+    if (seen[static_cast<std::size_t>(seed)]) continue;
+    seen[static_cast<std::size_t>(seed)] = true;
+    open.assign(1, seed);
+    // Nearest first, so that the seam of a one-sided surface is short.
+    for (std::size_t next = 0; next < open.size(); ++next) {
+      const int face = open[next];
+      for (int c = corners.first(face); c < corners.first(face + 1); ++c) {
+        const int across = twin[static_cast<std::size_t>(c)];
+        if (across < 0) continue;
+        const auto neighbor = static_cast<std::size_t>(corners.face(across));
+        if (seen[neighbor]) continue;
+        const bool same_way = corners.from(c) == corners.from(across);
+        is_turned[neighbor] = is_turned[static_cast<std::size_t>(face)] != same_way;
+        seen[neighbor] = true;
+        open.push_back(static_cast<int>(neighbor));
+      }
+    }
+  }
+  std::vector<int> turned;
+  for (std::size_t face = 0; face < faces; ++face) {
+    if (is_turned[face]) turned.push_back(static_cast<int>(face));
+  }
+  return turned;
+}
+
+/// Turns faces and renames the sides in `twin`; twins that still run the same way close a one-sided
+/// surface and are parted.
+void orient(Corners& corners, const std::vector<int>& turned, std::vector<int>& twin) {
+  std::vector<bool> is_turned(static_cast<std::size_t>(corners.faces()), false);
+  for (const int face : turned) {
+    is_turned[static_cast<std::size_t>(face)] = true;
+    corners.turn(face);
+  }
+  const auto renamed = [&](int c) {
+    return is_turned[static_cast<std::size_t>(corners.face(c))] ? corners.turned(c) : c;
+  };
+  std::vector<int> oriented(twin.size(), -1);
+  for (int c = 0; c < corners.count(); ++c) {
+    const int across = twin[static_cast<std::size_t>(c)];
+    if (across < 0) continue;
+    const int side = renamed(c), other = renamed(across);
+    if (corners.from(side) != corners.from(other)) oriented[static_cast<std::size_t>(side)] = other;
+  }
+  twin = std::move(oriented);
+}
+
+/// The lowest corner that is the same vertex of the surface, for each corner.
+std::vector<int> joined_corners(const Corners& corners, const std::vector<int>& twin) {
+  DisjointSets sets(corners.count());
+  for (int c = 0; c < corners.count(); ++c) {
+    const int across = twin[static_cast<std::size_t>(c)];
+    if (across >= 0) sets.join(c, corners.next(across));
+  }
+  std::vector<int> lowest(twin.size());
+  for (int c = 0; c < corners.count(); ++c) {
+    lowest[static_cast<std::size_t>(c)] = sets.lowest(c);
+  }
+  return lowest;
+}
+
+/// Vertices of the surface.
+struct Copies {
+  std::vector<int> of_corner;       ///< vertex of the surface at each corner
+  std::vector<VertexIndex> copied;  ///< the given vertex of each behind the given ones
+};
+
+/// The lowest corner of each given vertex keeps its number; its others are copies.
+Copies numbered(int vertices, const Corners& corners, const std::vector<int>& lowest,
+                const std::vector<int>& left_out) {
+  std::vector<bool> is_out(static_cast<std::size_t>(corners.faces()), false);
+  for (const int face : left_out) is_out[static_cast<std::size_t>(face)] = true;
+  std::vector<bool> is_taken(static_cast<std::size_t>(vertices), false);
+  std::vector<std::pair<VertexIndex, int>> others;  // given vertex and lowest corner
+  Copies copies{std::vector<int>(lowest.size(), -1), {}};
+  for (int c = 0; c < corners.count(); ++c) {
+    if (is_out[static_cast<std::size_t>(corners.face(c))]) continue;
+    if (lowest[static_cast<std::size_t>(c)] != c) continue;
+    const VertexIndex vertex = corners.from(c);
+    if (is_taken[static_cast<std::size_t>(vertex)]) {
+      others.emplace_back(vertex, c);
+    } else {
+      copies.of_corner[static_cast<std::size_t>(c)] = vertex;
+      is_taken[static_cast<std::size_t>(vertex)] = true;
+    }
+  }
+  std::ranges::sort(others);
+  for (const auto& [vertex, corner] : others) {
+    copies.of_corner[static_cast<std::size_t>(corner)] =
+        vertices + static_cast<int>(copies.copied.size());
+    copies.copied.push_back(vertex);
+  }
+  for (std::size_t c = 0; c < lowest.size(); ++c) {
+    copies.of_corner[c] = copies.of_corner[static_cast<std::size_t>(lowest[c])];
+  }
+  return copies;
+}
+
+using VertexHandle = OpenMesh::VertexHandle;
+using HalfedgeHandle = OpenMesh::HalfedgeHandle;
+
+/// OpenMesh's kernel is filled item by item, since add_face() refuses two edges between the same
+/// vertices.
+class HalfEdgeBuilder {
+ public:
+  HalfEdgeBuilder(const Corners& corners, const std::vector<int>& twin,
+                  const std::vector<int>& vertex_of_corner, Surface::HalfEdges& mesh)
+      : corners_(corners),
+        twin_(twin),
+        vertex_(vertex_of_corner),
+        mesh_(mesh),
+        handle_(twin.size()) {}
+
+  void build(int vertices, const std::vector<int>& left_out) {
+    mesh_.reserve(static_cast<std::size_t>(vertices), twin_.size() / 2 + twin_.size() / 16,
+                  static_cast<std::size_t>(corners_.faces()));
+    for (int v = 0; v < vertices; ++v) mesh_.new_vertex();
+    for (int c = 0; c < corners_.count(); ++c) {
+      if (vertex(c).is_valid() && !handle(c).is_valid()) add_edge(c);
+    }
+    if (!left_out.empty()) mesh_.request_face_status();
+    for (int face = 0; face < corners_.faces(); ++face) add_face(face);
+    for (int c = 0; c < corners_.count(); ++c) {
+      if (vertex(c).is_valid() && twin(c) < 0) close_border(c);
+    }
+  }
+
+ private:
+  int twin(int c) const { return twin_[static_cast<std::size_t>(c)]; }
+  VertexHandle vertex(int c) const { return VertexHandle(vertex_[static_cast<std::size_t>(c)]); }
+  HalfedgeHandle& handle(int c) { return handle_[static_cast<std::size_t>(c)]; }
+
+  void add_edge(int c) {
+    handle(c) = mesh_.new_edge(vertex(c), vertex(corners_.next(c)));
+    if (twin(c) >= 0) handle(twin(c)) = mesh_.opposite_halfedge_handle(handle(c));
+  }
+
+  void add_face(int number) {
+    const OpenMesh::FaceHandle face = mesh_.new_face();
+    const int first = corners_.first(number);
+    if (!vertex(first).is_valid()) {
+      mesh_.status(face).set_deleted(true);
+      return;
+    }
+    mesh_.set_halfedge_handle(face, handle(first));
+    for (int c = first; c < corners_.first(number + 1); ++c) {
+      mesh_.set_face_handle(handle(c), face);
+      mesh_.set_next_halfedge_handle(handle(c), handle(corners_.next(c)));
+      mesh_.set_halfedge_handle(vertex(c), handle(c));
+    }
+  }
+
+  /// Links the half-edge beyond side `c`, which has no face, to the next one along the border.
+  void close_border(int c) {
+    // Turn about the vertex where the side starts until the other border of its fan.
+    int last = corners_.previous(c);
+    while (twin(last) >= 0) last = corners_.previous(twin(last));
+    const HalfedgeHandle border = mesh_.opposite_halfedge_handle(handle(last));
+    mesh_.set_next_halfedge_handle(mesh_.opposite_halfedge_handle(handle(c)), border);
+    // OpenMesh knows a border vertex by the half-edge that leaves it along the border.
+    mesh_.set_halfedge_handle(vertex(c), border);
+  }
+
+  const Corners& corners_;
+  const std::vector<int>& twin_;
+  const std::vector<int>& vertex_;  // -1 in faces that are left out
+  Surface::HalfEdges& mesh_;
+  std::vector<HalfedgeHandle> handle_;
+};
+
+std::vector<VertexIndex> corners_of(const Triangles& triangles) {
+  return {triangles.data(), triangles.data() + triangles.size()};
+}
+
+std::vector<int> offsets_of(const Triangles& triangles) {
+  std::vector<int> offsets(static_cast<std::size_t>(triangles.rows()) + 1);
+  for (std::size_t t = 0; t < offsets.size(); ++t) offsets[t] = 3 * static_cast<int>(t);
+  return offsets;
+}
+
+}  // namespace
+
+Surface::Surface(int vertices, const Triangles& triangles)
+    : Surface(vertices, corners_of(triangles), offsets_of(triangles)) {}
+
+Surface::Surface(int vertices, const Polygons& polygons)
+    : Surface(vertices, polygons.corners, polygons.offsets) {}
+
+Surface::Surface(const Triangles& triangles, const Weld& weld)
+    : Surface(static_cast<int>(weld.representative.size()), weld.welded(triangles)) {}
+
+Surface::Surface(int vertices, std::vector<VertexIndex> vertex_of_corner, std::vector<int> offsets)
+    : vertices_(vertices) {
+  Corners corners(vertices, std::move(vertex_of_corner), std::move(offsets));
+  left_out_ = faces_that_repeat_a_vertex(corners);
+  SortedSides sorted = sorted_sides(corners, left_out_);
+  std::vector<int> twin = twins_of(corners, sorted);
+  turned_ = faces_to_turn(corners, twin);
+  orient(corners, turned_, twin);
+  const Copies copies = numbered(vertices, corners, joined_corners(corners, twin), left_out_);
+  HalfEdgeBuilder(corners, twin, copies.of_corner, half_edges_)
+      .build(vertices + static_cast<int>(copies.copied.size()), left_out_);
+  copied_ = copies.copied;
+  sides_ = std::move(sorted.sides);
+  first_side_ = std::move(sorted.first_of_edge);
+}
+
+VertexIndex Surface::vertex_of(OpenMesh::VertexHandle vertex) const {
+  if (vertex.idx() < vertices_) return vertex.idx();
+  return copied_[static_cast<std::size_t>(vertex.idx() - vertices_)];
+}
+
+std::vector<OpenMesh::VertexHandle> Surface::copies_of(VertexIndex vertex) const {
+  std::vector<OpenMesh::VertexHandle> copies = {VertexHandle(vertex)};
+  const auto [first, last] = std::equal_range(copied_.begin(), copied_.end(), vertex);
+  for (auto copy = first; copy != last; ++copy) {
+    copies.emplace_back(vertices_ + static_cast<int>(copy - copied_.begin()));
+  }
+  return copies;
+}
+
+std::vector<VertexIndex> Surface::neighbors(VertexIndex vertex) const {
+  std::vector<VertexIndex> neighbors;
+  for (const auto copy : copies_of(vertex)) {
+    for (const auto neighbor : half_edges_.vv_range(copy)) {
+      neighbors.push_back(vertex_of(neighbor));
+    }
+  }
+  std::ranges::sort(neighbors);
+  neighbors.erase(std::unique(neighbors.begin(), neighbors.end()), neighbors.end());
+  return neighbors;
+}
+
+std::map<VertexIndex, double> within_reach(const Surface& surface, const Positions& positions,
+                                           double reach, const std::vector<VertexIndex>& from) {
+  using Front = std::pair<double, VertexIndex>;
+  std::priority_queue<Front, std::vector<Front>, std::greater<>> fronts;
+  for (const VertexIndex v : from) fronts.emplace(0, v);
+  std::map<VertexIndex, double> distances;
+  while (!fronts.empty()) {
+    const auto [distance, vertex] = fronts.top();
+    fronts.pop();
+    if (!distances.try_emplace(vertex, distance).second) continue;
+    for (const VertexIndex to : surface.neighbors(vertex)) {
+      const double there = distance + (positions.row(vertex) - positions.row(to)).norm();
+      if (there <= reach && !distances.contains(to)) fronts.emplace(there, to);
+    }
+  }
+  return distances;
+}
+
+double longest_edge(const Surface& surface, const Positions& positions, VertexIndex vertex) {
+  double longest = 0;
+  for (const VertexIndex to : surface.neighbors(vertex)) {
+    longest = std::max(longest, (positions.row(vertex) - positions.row(to)).norm());
+  }
+  return longest;
+}
+
+ConnectedComponents connected_components(int vertices, const Triangles& triangles) {
+  return connected_components(triangles, Weld::none(vertices));
+}
+
+ConnectedComponents connected_components(const Triangles& triangles, const Weld& weld) {
+  const auto vertices = static_cast<int>(weld.representative.size());
+  const Corners corners(vertices, corners_of(triangles), offsets_of(triangles));
+  DisjointSets sets(vertices);
+  for (VertexIndex v = 0; v < vertices; ++v) {
+    sets.join(v, weld.representative[static_cast<std::size_t>(v)]);
+  }
+  for (int c = 0; c < corners.count(); ++c) sets.join(corners.from(c), corners.to(c));
+  ConnectedComponents components;
+  components.of_vertex.reserve(weld.representative.size());
+  for (VertexIndex v = 0; v < vertices; ++v) {
+    const int lowest = sets.lowest(v);
+    components.of_vertex.push_back(
+        lowest == v ? components.count++ : components.of_vertex[static_cast<std::size_t>(lowest)]);
+  }
+  return components;
+}
+
+}  // namespace mimetra

@@ -1,4 +1,0 @@
-#pragma once
-
-/// What an operation reports is JSON.
-#include "toolkit/io/json_text.h"
