@@ -86,7 +86,7 @@ class StoredMember : public ZipMember {
 };
 
 /// What a reader asks for first, to see whether the rest is what it expects.
-constexpr std::size_t kBeginning = std::size_t{1} << 17;
+constexpr std::size_t kFirstBytes = std::size_t{1} << 17;
 
 /// A compressed member: its beginning is decoded alone, all of it once more is asked for.
 class DeflatedMember : public ZipMember {
@@ -97,7 +97,7 @@ class DeflatedMember : public ZipMember {
     if (offset > size_ || bytes > size_ - offset) zip_->fail(name_, "it is truncated");
     const std::lock_guard lock(zip_->mutex);
     const std::size_t end = offset + bytes;
-    if (bytes_.size() < end) decode(end <= kBeginning ? std::min(kBeginning, size_) : size_);
+    if (bytes_.size() < end) decode(end <= kFirstBytes ? std::min(kFirstBytes, size_) : size_);
     std::memcpy(to, bytes_.data() + offset, bytes);
   }
 

@@ -19,13 +19,13 @@ namespace {
 // What the reference implementation of sparse localized deformation components writes and reads.
 constexpr auto kVerts = "verts", kTris = "tris";
 // What goes with them here, and what the reference leaves alone.
-constexpr auto kTimes = "times", kRest = "rest";
+constexpr auto kTimesName = "times", kRestName = "rest";
 // Corners of each polygon and their vertices where not all are triangles, and texture coordinates
 // and which of them each corner has.
 constexpr auto kSizes = "polygon_sizes", kCorners = "polygon_corners";
 constexpr auto kTexture = "uvs", kTextureCorners = "uv_corners";
 
-std::string shape_text(const Hdf5Dataset& set) {
+std::string dataset_shape(const Hdf5Dataset& set) {
   std::vector<std::string> sizes;
   for (const std::uint64_t size : set.shape()) sizes.push_back(std::to_string(size));
   return sizes.empty() ? "one number" : joined(sizes, " x ");
@@ -56,7 +56,7 @@ class SplocsFile : public PointCache {
   SplocsFile(const fs::path& path, Hdf5Dataset verts) : PointCache(path), verts_(std::move(verts)) {
     const auto& shape = verts_.shape();
     if (shape.size() != 3 || shape[2] != 3 || !verts_.type().is_real) {
-      verts_.fail("is " + shape_text(verts_) + (verts_.type().is_real ? "" : " integers") +
+      verts_.fail("is " + dataset_shape(verts_) + (verts_.type().is_real ? "" : " integers") +
                   ", expected frames x vertices x 3 of float32 or float64");
     }
     frames_ = counted(verts_, shape[0]);
@@ -74,7 +74,7 @@ class SplocsFile : public PointCache {
 
 void check_shape(const Hdf5Dataset& set, const std::vector<std::uint64_t>& expected,
                  const std::string& text) {
-  if (set.shape() != expected) set.fail("is " + shape_text(set) + ", expected " + text);
+  if (set.shape() != expected) set.fail("is " + dataset_shape(set) + ", expected " + text);
 }
 
 /// A dataset of integers `least` .. `most`.
@@ -92,7 +92,7 @@ std::vector<int> integers_of(const Hdf5Dataset& set, int least, int most) {
 
 Polygons triangles_of(const Hdf5Dataset& set, int vertices) {
   if (set.shape().size() != 2 || set.shape()[1] != 3) {
-    set.fail("is " + shape_text(set) + ", expected triangles x 3");
+    set.fail("is " + dataset_shape(set) + ", expected triangles x 3");
   }
   if (set.size() == 0) set.fail("has no triangles");
   Polygons polygons;
@@ -184,11 +184,11 @@ OpenSequence open_splocs(const fs::path& path, const SequenceSource& source,
   auto cache = std::make_unique<const SplocsFile>(path, positions_of(file));
   PointCacheParts parts;
   if (file.has(kTris) && !source.topology) parts.faces = faces_of(file, cache->vertices());
-  if (file.has(kTimes)) {
-    parts.times = times_in(file.dataset(kTimes), cache->frames());
+  if (file.has(kTimesName)) {
+    parts.times = times_in(file.dataset(kTimesName), cache->frames());
     check_times(path.string(), *parts.times);
   }
-  if (file.has(kRest)) parts.rest = rest_in(file.dataset(kRest), cache->vertices());
+  if (file.has(kRestName)) parts.rest = rest_in(file.dataset(kRestName), cache->vertices());
   return open_point_cache(std::move(cache), source, std::move(parts), context);
 }
 
@@ -200,10 +200,10 @@ Hdf5Image image_of(const SequenceHeader& header, Hdf5Array::Type type) {
                  static_cast<std::uint64_t>(faces.vertices), 3});
   image.add(kTris, Hdf5Array::of(faces.triangles));
   if (header.times_are_known) {
-    image.add(kTimes, Hdf5Array::of(std::span(header.times.data(),
-                                              static_cast<std::size_t>(header.times.size()))));
+    image.add(kTimesName, Hdf5Array::of(std::span(header.times.data(),
+                                                  static_cast<std::size_t>(header.times.size()))));
   }
-  if (header.rest_is_known) image.add(kRest, Hdf5Array::of(header.rest));
+  if (header.rest_is_known) image.add(kRestName, Hdf5Array::of(header.rest));
   const std::vector<int>& offsets = faces.polygons.offsets;
   std::vector<int> sizes;
   for (std::size_t i = 1; i < offsets.size(); ++i) sizes.push_back(offsets[i] - offsets[i - 1]);

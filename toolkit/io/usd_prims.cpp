@@ -130,15 +130,15 @@ Matrices matrices_of(const std::string& path, const UsdProperty& property) {
   return matrices;
 }
 
-using Names = std::vector<std::string>;
+using JointNames = std::vector<std::string>;
 
-Names names_of(const UsdProperty* property) {
-  return property ? property->value.words : Names();
+JointNames names_of(const UsdProperty* property) {
+  return property ? property->value.words : JointNames();
 }
 
 /// From each joint to the skeleton, of transforms that each lead to the joint above. The name of a
 /// joint is a path: "root/neck/jaw".
-Matrices joined(Matrices transforms, const Names& names) {
+Matrices chained(Matrices transforms, const JointNames& names) {
   std::map<std::string, std::size_t> index;
   for (std::size_t j = 0; j < names.size(); ++j) index.emplace(names[j], j);
   std::vector<std::size_t> order(names.size());
@@ -159,10 +159,10 @@ Matrices joined(Matrices transforms, const Names& names) {
 
 /// Joints of a skeleton that vertices of a mesh hang on, from the first on.
 std::set<std::size_t> joints_in_use(const std::string& path, const UsdStack& mesh,
-                                    const Names& names) {
+                                    const JointNames& names) {
   const UsdProperty* indices = usd_inherited(mesh, "primvars:skel:jointIndices").property;
   const UsdProperty* weights = usd_inherited(mesh, "primvars:skel:jointWeights").property;
-  const Names own = names_of(usd_inherited(mesh, "skel:joints").property);
+  const JointNames own = names_of(usd_inherited(mesh, "skel:joints").property);
   const std::vector<int> which = usd_integers(path, *indices, "jointIndices");
   const std::vector<double> shares = weights ? usd_numbers(path, *weights) : std::vector<double>();
   std::set<std::size_t> used;
@@ -207,10 +207,10 @@ UsdHold usd_hold(const std::string& path, const UsdPrim& skeleton, const UsdStac
   if (!rest_property || !bound_property) return hold;
   Matrices rest = matrices_of(path, *rest_property);
   const Matrices bound = matrices_of(path, *bound_property);
-  const Names names = names_of(usd_property(skeleton, "joints"));
+  const JointNames names = names_of(usd_property(skeleton, "joints"));
   std::set<std::size_t> used;
   if (names.size() == rest.size() && names.size() == bound.size()) {
-    rest = joined(std::move(rest), names);
+    rest = chained(std::move(rest), names);
     used = joints_in_use(path, stack, names);
   }
   const auto held_by = [&](std::size_t joint) -> Eigen::Matrix4d {
