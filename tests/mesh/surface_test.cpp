@@ -189,7 +189,7 @@ TEST(Surface, HoldsPolygons) {
 TEST(Surface, ShowsAllSidesOfEachEdge) {
   const Triangles triangles = triangles_of({{{2, 1, 0}}, {{0, 1, 3}}, {{1, 0, 4}}});
   std::vector<std::vector<int>> edges;
-  Surface(5, triangles).for_each_edge([&](std::span<const int> sides) {
+  EdgeSides(5, triangles).for_each_edge([&](std::span<const int> sides) {
     edges.emplace_back(sides.begin(), sides.end());
   });
   // 01, 02, 03, 04, 12, 13, 14

@@ -246,7 +246,7 @@ Seen ClosestSurface::seen_from(const Vector3d& point, const Vector3d& direction)
 
 std::vector<BorderEdge> border_edges(int vertices, const Triangles& triangles) {
   std::vector<BorderEdge> borders;
-  Surface(vertices, triangles).for_each_edge([&borders](std::span<const int> sides) {
+  EdgeSides(vertices, triangles).for_each_edge([&borders](std::span<const int> sides) {
     if (sides.size() == 1) borders.push_back({sides[0] / 3, sides[0] % 3});
   });
   return borders;

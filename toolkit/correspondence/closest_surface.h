@@ -53,7 +53,7 @@ struct BorderEdge {
   int triangle;
   int corner;  ///< from this corner to the next
 };
-/// All of a mesh of so many vertices, as Surface::for_each_edge(). Throws as Surface.
+/// All of a mesh of so many vertices, as EdgeSides. Throws as it.
 std::vector<BorderEdge> border_edges(int vertices, const Triangles& triangles);
 
 /// Centroid of each triangle (M x 3).

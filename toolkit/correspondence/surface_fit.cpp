@@ -68,7 +68,7 @@ Eigen::SparseMatrix<double> couplings(int vertices, const Triangles& triangles, 
       entries.emplace_back(3 * j + row, 3 * i + row, -2 * smoothness);
     }
   };
-  Surface(vertices, triangles).for_each_edge([&couple](std::span<const int> sides) {
+  EdgeSides(vertices, triangles).for_each_edge([&couple](std::span<const int> sides) {
     for (std::size_t one = 0; one < sides.size(); ++one) {
       for (std::size_t other = one + 1; other < sides.size(); ++other) {
         couple(sides[one] / 3, sides[other] / 3);

@@ -25,7 +25,7 @@ struct EdgeCounts {
 EdgeCounts count_edges(int vertices, const Triangles& triangles) {
   EdgeCounts counts;
   const auto from = [&triangles](int corner) { return triangles(corner / 3, corner % 3); };
-  Surface(vertices, triangles).for_each_edge([&](std::span<const int> sides) {
+  EdgeSides(vertices, triangles).for_each_edge([&](std::span<const int> sides) {
     if (sides.size() == 1) ++counts.boundary;
     if (sides.size() > 2) ++counts.nonmanifold;
     if (sides.size() == 2 && from(sides[0]) == from(sides[1])) ++counts.inconsistent;
@@ -60,12 +60,12 @@ std::vector<VertexIndex> vertices_without_face(int vertices, const Triangles& tr
   return unused;
 }
 
-/// The surface, and on it the one edge of each face that repeats a vertex: such a face gets a third
-/// corner of its own.
-Surface with_edges_of_all(int vertices, Triangles triangles) {
-  Surface surface(vertices, triangles);
-  if (surface.left_out().empty()) return surface;
-  for (const int t : surface.left_out()) {
+/// With the one edge of each face that repeats a vertex: such a face gets a third corner of its
+/// own.
+EdgeSides sides_of_all(int vertices, Triangles triangles) {
+  EdgeSides sides(vertices, triangles);
+  if (sides.left_out().empty()) return sides;
+  for (const int t : sides.left_out()) {
     triangles(t, triangles(t, 1) == triangles(t, 2) ? 1 : 0) = vertices++;
   }
   return {vertices, triangles};
@@ -139,7 +139,7 @@ MeshReport inspect(const Positions& positions, const Connectivity& connectivity)
 
 std::vector<std::vector<int>> triangle_neighbors(int vertices, const Triangles& triangles) {
   std::vector<std::vector<int>> neighbors(triangles.rows());
-  with_edges_of_all(vertices, triangles).for_each_edge([&](std::span<const int> sides) {
+  sides_of_all(vertices, triangles).for_each_edge([&](std::span<const int> sides) {
     for (const int a : sides) {
       for (const int b : sides) {
         if (a != b) neighbors[a / 3].push_back(b / 3);

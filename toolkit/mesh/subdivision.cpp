@@ -37,7 +37,7 @@ struct Surroundings {
     const auto corner = [&triangles](int side, int ahead) {
       return triangles(side / 3, (side + ahead) % 3);
     };
-    surface.for_each_edge([&](std::span<const int> sides) {
+    EdgeSides(vertices, triangles).for_each_edge([&](std::span<const int> sides) {
       const Edge edge = edge_of(corner(sides[0], 0), corner(sides[0], 1));
       if (sides.size() == 2) {
         opposite[edge] = {corner(sides[0], 2), corner(sides[1], 2)};

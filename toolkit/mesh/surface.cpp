@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <compare>
 #include <functional>
+#include <numeric>
 #include <queue>
 #include <stdexcept>
 #include <string>
@@ -13,19 +14,37 @@
 namespace mimetra {
 namespace {
 
+void check_indices(int vertices, std::span<const VertexIndex> corners,
+                   const std::vector<int>& offsets) {
+  const auto is_outside = [vertices](VertexIndex v) { return v < 0 || v >= vertices; };
+  const auto outside = std::ranges::find_if(corners, is_outside);
+  if (outside == corners.end()) return;
+  const auto corner = static_cast<int>(outside - corners.begin());
+  const auto face = std::ranges::upper_bound(offsets, corner) - offsets.begin() - 1;
+  throw std::invalid_argument("triangle " + std::to_string(face) + " uses vertex " +
+                              std::to_string(*outside) + ", expected 0 to " +
+                              std::to_string(vertices - 1));
+}
+
+std::vector<int> faces_that_repeat_a_vertex(std::span<const VertexIndex> corners,
+                                            const std::vector<int>& offsets) {
+  std::vector<int> faces;
+  std::vector<VertexIndex> around;
+  for (std::size_t face = 0; face + 1 < offsets.size(); ++face) {
+    around.assign(corners.begin() + offsets[face], corners.begin() + offsets[face + 1]);
+    std::ranges::sort(around);
+    if (std::ranges::adjacent_find(around) != around.end()) faces.push_back(static_cast<int>(face));
+  }
+  return faces;
+}
+
 /// The corners of faces, face after face. Corner c is also the side from it to the next corner.
 class Corners {
  public:
-  Corners(int vertices, std::vector<VertexIndex> vertex, std::vector<int> offsets)
+  Corners(std::vector<VertexIndex> vertex, std::vector<int> offsets)
       : vertex_(std::move(vertex)), offsets_(std::move(offsets)), face_(vertex_.size()) {
     for (int face = 0; face < faces(); ++face) {
-      for (int c = first(face); c < first(face + 1); ++c) {
-        face_[at(c)] = face;
-        if (vertex_[at(c)] >= 0 && vertex_[at(c)] < vertices) continue;
-        throw std::invalid_argument("triangle " + std::to_string(face) + " uses vertex " +
-                                    std::to_string(vertex_[at(c)]) + ", expected 0 to " +
-                                    std::to_string(vertices - 1));
-      }
+      std::fill(face_.begin() + first(face), face_.begin() + first(face + 1), face);
     }
   }
 
@@ -37,13 +56,6 @@ class Corners {
   VertexIndex to(int c) const { return vertex_[at(next(c))]; }
   int next(int c) const { return c + 1 < first(face(c) + 1) ? c + 1 : first(face(c)); }
   int previous(int c) const { return c > first(face(c)) ? c - 1 : first(face(c) + 1) - 1; }
-
-  bool repeats_vertex(int face) const {
-    std::vector<VertexIndex> around(vertex_.begin() + first(face),
-                                    vertex_.begin() + first(face + 1));
-    std::ranges::sort(around);
-    return std::ranges::adjacent_find(around) != around.end();
-  }
 
   /// Lets the face run the other way round, from the same first corner.
   void turn(int face) {
@@ -59,62 +71,15 @@ class Corners {
   std::vector<int> offsets_, face_;
 };
 
-std::vector<int> faces_that_repeat_a_vertex(const Corners& corners) {
-  std::vector<int> faces;
-  for (int face = 0; face < corners.faces(); ++face) {
-    if (corners.repeats_vertex(face)) faces.push_back(face);
-  }
-  return faces;
-}
-
-/// Sides by their edges.
-struct SortedSides {
-  std::vector<int> sides, first_of_edge;
-};
-
-SortedSides sorted_sides(const Corners& corners, const std::vector<int>& left_out) {
-  struct Side {
-    VertexIndex low, high;
-    int corner;
-    auto operator<=>(const Side&) const = default;
-  };
-  std::vector<Side> sides;
-  sides.reserve(static_cast<std::size_t>(corners.count()));
-  auto skipped = left_out.begin();
-  for (int face = 0; face < corners.faces(); ++face) {
-    if (skipped != left_out.end() && *skipped == face) {
-      ++skipped;
-      continue;
-    }
-    for (int c = corners.first(face); c < corners.first(face + 1); ++c) {
-      const auto [low, high] = std::minmax({corners.from(c), corners.to(c)});
-      sides.push_back({low, high, c});
-    }
-  }
-  std::ranges::sort(sides);
-  SortedSides sorted;
-  sorted.sides.reserve(sides.size());
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    if (i == 0 || sides[i].low != sides[i - 1].low || sides[i].high != sides[i - 1].high) {
-      sorted.first_of_edge.push_back(static_cast<int>(i));
-    }
-    sorted.sides.push_back(sides[i].corner);
-  }
-  sorted.first_of_edge.push_back(static_cast<int>(sides.size()));
-  return sorted;
-}
-
 /// The other side of each edge that exactly two faces share; -1 elsewhere.
-std::vector<int> twins_of(const Corners& corners, const SortedSides& sorted) {
-  std::vector<int> twin(static_cast<std::size_t>(corners.count()), -1);
-  for (std::size_t e = 0; e + 1 < sorted.first_of_edge.size(); ++e) {
-    const int first = sorted.first_of_edge[e];
-    if (sorted.first_of_edge[e + 1] - first != 2) continue;
-    const int a = sorted.sides[static_cast<std::size_t>(first)];
-    const int b = sorted.sides[static_cast<std::size_t>(first) + 1];
+std::vector<int> twins_of(const EdgeSides& edges, int sides) {
+  std::vector<int> twin(static_cast<std::size_t>(sides), -1);
+  edges.for_each_edge([&twin](std::span<const int> sides_of_edge) {
+    if (sides_of_edge.size() != 2) return;
+    const int a = sides_of_edge[0], b = sides_of_edge[1];
     twin[static_cast<std::size_t>(a)] = b;
     twin[static_cast<std::size_t>(b)] = a;
-  }
+  });
   return twin;
 }
 
@@ -294,8 +259,8 @@ class HalfEdgeBuilder {
   std::vector<HalfedgeHandle> handle_;
 };
 
-std::vector<VertexIndex> corners_of(const Triangles& triangles) {
-  return {triangles.data(), triangles.data() + triangles.size()};
+std::span<const VertexIndex> corners_of(const Triangles& triangles) {
+  return {triangles.data(), static_cast<std::size_t>(triangles.size())};
 }
 
 std::vector<int> offsets_of(const Triangles& triangles) {
@@ -306,8 +271,64 @@ std::vector<int> offsets_of(const Triangles& triangles) {
 
 }  // namespace
 
+EdgeSides::EdgeSides(int vertices, const Triangles& triangles)
+    : EdgeSides(vertices, corners_of(triangles), offsets_of(triangles)) {}
+
+EdgeSides::EdgeSides(int vertices, const Polygons& polygons)
+    : EdgeSides(vertices, polygons.corners, polygons.offsets) {}
+
+EdgeSides::EdgeSides(int vertices, std::span<const VertexIndex> corners,
+                     const std::vector<int>& offsets) {
+  check_indices(vertices, corners, offsets);
+  left_out_ = faces_that_repeat_a_vertex(corners, offsets);
+  // Sides by their lower vertex, counted and then filled in.
+  struct Side {
+    VertexIndex high;
+    int corner;
+    auto operator<=>(const Side&) const = default;
+  };
+  const auto for_each_side = [&](const auto& use) {
+    auto skipped = left_out_.begin();
+    for (int face = 0; face + 1 < std::ssize(offsets); ++face) {
+      if (skipped != left_out_.end() && *skipped == face) {
+        ++skipped;
+        continue;
+      }
+      const int first = offsets[static_cast<std::size_t>(face)];
+      const int end = offsets[static_cast<std::size_t>(face) + 1];
+      for (int c = first; c < end; ++c) {
+        const auto [low, high] =
+            std::minmax(corners[static_cast<std::size_t>(c)],
+                        corners[static_cast<std::size_t>(c + 1 < end ? c + 1 : first)]);
+        use(static_cast<std::size_t>(low), Side{high, c});
+      }
+    }
+  };
+  std::vector<std::size_t> end_of(static_cast<std::size_t>(vertices) + 1, 0);
+  for_each_side([&end_of](std::size_t low, const Side&) { ++end_of[low + 1]; });
+  std::partial_sum(end_of.begin(), end_of.end(), end_of.begin());
+  std::vector<Side> sides(end_of.back());
+  for_each_side([&](std::size_t low, const Side& side) { sides[end_of[low]++] = side; });
+
+  sides_.reserve(sides.size());
+  std::size_t i = 0;
+  for (int low = 0; low < vertices; ++low) {
+    const std::size_t first = i, end = end_of[static_cast<std::size_t>(low)];
+    std::sort(sides.begin() + static_cast<std::ptrdiff_t>(first),
+              sides.begin() + static_cast<std::ptrdiff_t>(end));
+    for (; i < end; ++i) {
+      if (i == first || sides[i].high != sides[i - 1].high) {
+        first_of_edge_.push_back(static_cast<int>(i));
+      }
+      sides_.push_back(sides[i].corner);
+    }
+  }
+  first_of_edge_.push_back(static_cast<int>(sides.size()));
+}
+
 Surface::Surface(int vertices, const Triangles& triangles)
-    : Surface(vertices, corners_of(triangles), offsets_of(triangles)) {}
+    : Surface(vertices, {corners_of(triangles).begin(), corners_of(triangles).end()},
+              offsets_of(triangles)) {}
 
 Surface::Surface(int vertices, const Polygons& polygons)
     : Surface(vertices, polygons.corners, polygons.offsets) {}
@@ -317,18 +338,16 @@ Surface::Surface(const Triangles& triangles, const Weld& weld)
 
 Surface::Surface(int vertices, std::vector<VertexIndex> vertex_of_corner, std::vector<int> offsets)
     : vertices_(vertices) {
-  Corners corners(vertices, std::move(vertex_of_corner), std::move(offsets));
-  left_out_ = faces_that_repeat_a_vertex(corners);
-  SortedSides sorted = sorted_sides(corners, left_out_);
-  std::vector<int> twin = twins_of(corners, sorted);
+  const EdgeSides edges(vertices, vertex_of_corner, offsets);
+  left_out_ = edges.left_out();
+  Corners corners(std::move(vertex_of_corner), std::move(offsets));
+  std::vector<int> twin = twins_of(edges, corners.count());
   turned_ = faces_to_turn(corners, twin);
   orient(corners, turned_, twin);
   const Copies copies = numbered(vertices, corners, joined_corners(corners, twin), left_out_);
   HalfEdgeBuilder(corners, twin, copies.of_corner, half_edges_)
       .build(vertices + static_cast<int>(copies.copied.size()), left_out_);
   copied_ = copies.copied;
-  sides_ = std::move(sorted.sides);
-  first_side_ = std::move(sorted.first_of_edge);
 }
 
 VertexIndex Surface::vertex_of(OpenMesh::VertexHandle vertex) const {
@@ -389,12 +408,15 @@ ConnectedComponents connected_components(int vertices, const Triangles& triangle
 
 ConnectedComponents connected_components(const Triangles& triangles, const Weld& weld) {
   const auto vertices = static_cast<int>(weld.representative.size());
-  const Corners corners(vertices, corners_of(triangles), offsets_of(triangles));
+  check_indices(vertices, corners_of(triangles), offsets_of(triangles));
   DisjointSets sets(vertices);
   for (VertexIndex v = 0; v < vertices; ++v) {
     sets.join(v, weld.representative[static_cast<std::size_t>(v)]);
   }
-  for (int c = 0; c < corners.count(); ++c) sets.join(corners.from(c), corners.to(c));
+  for (const auto& triangle : triangles.rowwise()) {
+    sets.join(triangle[0], triangle[1]);
+    sets.join(triangle[1], triangle[2]);
+  }
   ConnectedComponents components;
   components.of_vertex.reserve(weld.representative.size());
   for (VertexIndex v = 0; v < vertices; ++v) {

@@ -10,6 +10,38 @@
 
 namespace mimetra {
 
+/// The sides of a mesh's faces, by their edges. Corners are counted face after face, so that number
+/// c of triangle t is 3 t + c; a side is named by the corner that it starts from.
+class EdgeSides {
+ public:
+  /// Throws std::invalid_argument that names the first face with a vertex outside 0 ..
+  /// `vertices` - 1.
+  EdgeSides(int vertices, const Triangles& triangles);
+  EdgeSides(int vertices, const Polygons& polygons);
+
+  /// Calls `visit` for each edge, by its lower, then by its higher vertex, with all its sides: a
+  /// std::span<const int>, ascending.
+  template <typename Visit>
+  void for_each_edge(Visit visit) const {
+    for (std::size_t e = 0; e + 1 < first_of_edge_.size(); ++e) {
+      const auto first = static_cast<std::size_t>(first_of_edge_[e]);
+      visit(std::span(sides_).subspan(first,
+                                      static_cast<std::size_t>(first_of_edge_[e + 1]) - first));
+    }
+  }
+
+  /// Faces that have a vertex twice, ascending. They have no sides here.
+  const std::vector<int>& left_out() const { return left_out_; }
+
+ private:
+  friend class Surface;
+  EdgeSides(int vertices, std::span<const VertexIndex> corners, const std::vector<int>& offsets);
+
+  std::vector<int> sides_;          // edge by edge
+  std::vector<int> first_of_edge_;  // and the end
+  std::vector<int> left_out_;
+};
+
 /// The connectivity of any mesh as OpenMesh half-edges, to walk along.
 ///
 /// Half-edges hold oriented manifolds only. Faces are neighbours where exactly two share an edge;
@@ -23,8 +55,7 @@ class Surface {
  public:
   using HalfEdges = OpenMesh::PolyConnectivity;
 
-  /// Throws std::invalid_argument that names the first face with a vertex outside 0 ..
-  /// `vertices` - 1.
+  /// Throws std::invalid_argument as EdgeSides.
   Surface(int vertices, const Triangles& triangles);
   Surface(int vertices, const Polygons& polygons);
   /// On the vertices that stand for welded ones; the others have no faces.
@@ -49,17 +80,6 @@ class Surface {
   /// neighbours never does.
   const std::vector<int>& turned() const { return turned_; }
 
-  /// Calls `visit` for each edge, by its lower, then by its higher vertex, with all its sides: a
-  /// std::span<const int> of the corners, ascending, from which a face has the edge to its next
-  /// corner. Corners are counted face after face; that number c of triangle t is 3 t + c.
-  template <typename Visit>
-  void for_each_edge(Visit visit) const {
-    for (std::size_t e = 0; e + 1 < first_side_.size(); ++e) {
-      const auto first = static_cast<std::size_t>(first_side_[e]);
-      visit(std::span(sides_).subspan(first, static_cast<std::size_t>(first_side_[e + 1]) - first));
-    }
-  }
-
   /// Given vertices that an edge joins with a vertex, ascending.
   std::vector<VertexIndex> neighbors(VertexIndex vertex) const;
 
@@ -70,8 +90,6 @@ class Surface {
   HalfEdges half_edges_;
   std::vector<VertexIndex> copied_;  // the given vertex of each copy, ascending
   std::vector<int> left_out_, turned_;
-  std::vector<int> sides_;       // corners, edge by edge
-  std::vector<int> first_side_;  // of each edge, and the end
 };
 
 /// Vertices that edges lead to within `reach` (length) of the nearest of `from`, and how far.
@@ -90,7 +108,7 @@ struct ConnectedComponents {
   std::vector<int> of_vertex;
 };
 
-/// Throws std::invalid_argument as Surface.
+/// Throws std::invalid_argument as EdgeSides.
 ConnectedComponents connected_components(int vertices, const Triangles& triangles);
 /// The same where welded vertices are one.
 ConnectedComponents connected_components(const Triangles& triangles, const Weld& weld);

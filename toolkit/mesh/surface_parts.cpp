@@ -20,7 +20,7 @@ using RimEdge = std::pair<VertexIndex, VertexIndex>;
 /// Edges of one triangle, by their lower vertex first.
 std::vector<RimEdge> boundary_edges(int vertices, const Triangles& welded) {
   std::vector<RimEdge> edges;
-  Surface(vertices, welded).for_each_edge([&](std::span<const int> sides) {
+  EdgeSides(vertices, welded).for_each_edge([&](std::span<const int> sides) {
     if (sides.size() != 1) return;
     const int t = sides[0] / 3, c = sides[0] % 3;
     edges.emplace_back(std::minmax({welded(t, c), welded(t, (c + 1) % 3)}));

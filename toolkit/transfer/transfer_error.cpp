@@ -61,8 +61,8 @@ BorderCrease::BorderCrease(const Positions& rest, const Triangles& triangles,
   for (int t = 0; t < triangles.rows(); ++t) {
     if (quality_of(rest, triangles, t) < kDegenerateQuality) takes_part[t] = false;
   }
-  const Surface surface(static_cast<int>(rest.rows()), triangles);
-  surface.for_each_edge([&](std::span<const int> all_sides) {
+  const EdgeSides edges(static_cast<int>(rest.rows()), triangles);
+  edges.for_each_edge([&](std::span<const int> all_sides) {
     std::vector<int> sides;
     std::ranges::copy_if(all_sides, std::back_inserter(sides),
                          [&](int side) { return takes_part[side / 3]; });
