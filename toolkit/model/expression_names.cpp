@@ -17,23 +17,23 @@ struct HalfName {
 };
 
 HalfName half_of(const std::string& name) {
-  struct Side {
+  struct Affix {
     std::string_view text;
     Half half;
   };
-  constexpr Side kEndings[] = {
+  constexpr Affix kEndings[] = {
       {"Left", Half::left}, {"_left", Half::left}, {"_L", Half::left},     {"_l", Half::left},
       {".L", Half::left},   {".l", Half::left},    {"Right", Half::right}, {"_right", Half::right},
       {"_R", Half::right},  {"_r", Half::right},   {".R", Half::right},    {".r", Half::right}};
-  for (const Side& ending : kEndings) {
+  for (const Affix& ending : kEndings) {
     if (!name.ends_with(ending.text)) continue;
     const std::string stem = name.substr(0, name.size() - ending.text.size());
     return {ending.half, stem, folded_name(stem)};
   }
-  constexpr Side kBeginnings[] = {
+  constexpr Affix kBeginnings[] = {
       {"L_", Half::left},  {"l_", Half::left},  {"Left_", Half::left},   {"left_", Half::left},
       {"R_", Half::right}, {"r_", Half::right}, {"Right_", Half::right}, {"right_", Half::right}};
-  for (const Side& beginning : kBeginnings) {
+  for (const Affix& beginning : kBeginnings) {
     if (!name.starts_with(beginning.text)) continue;
     const std::string stem = name.substr(beginning.text.size());
     return {beginning.half, stem, folded_name(stem)};
