@@ -266,8 +266,7 @@ std::vector<FacesInImage> faces_of_recording(const ImageSequence& images, const 
   for (int frame = 0; frame < count; ++frame) {
     found[static_cast<std::size_t>(frame)].image = images.name(frame);
   }
-  const int all = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const int threads = std::min(context.threads() > 0 ? context.threads() : all, chunks);
+  const int threads = std::min(context.thread_count(), chunks);
   if (threads == 1) {
     search_here(images, finder, min_confidence, found, context);
     return found;

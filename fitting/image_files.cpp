@@ -83,11 +83,6 @@ std::vector<std::filesystem::path> image_files(const std::string& text) {
   return files;
 }
 
-void check_image(const std::filesystem::path& path) {
-  require_dlib(path.string());
-  checked_image_header(path.string(), read_file(path));
-}
-
 Image read_image(const std::filesystem::path& path) {
   const std::string bytes = read_file(path);
   const ImageHeader header = checked_image_header(path.string(), bytes);
@@ -95,7 +90,10 @@ Image read_image(const std::filesystem::path& path) {
 }
 
 void ImageFiles::check() const {
-  std::ranges::for_each(files_, check_image);
+  for (const std::filesystem::path& path : files_) {
+    require_dlib(path.string());
+    checked_image_header(path.string(), read_file(path));
+  }
 }
 
 Image cropped(const Image& image, int left, int top, int width, int height) {

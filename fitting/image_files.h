@@ -24,9 +24,6 @@ std::vector<std::filesystem::path> image_files(const std::string& text);
 /// that is truncated, damaged or of another type, and where mimetra was built without dlib.
 Image read_image(const std::filesystem::path& path);
 
-/// Throws as read_image for a file that is no such image or was cut; its pixels are not decoded.
-void check_image(const std::filesystem::path& path);
-
 /// A frame from each of some files.
 class ImageFiles final : public ImageSequence {
  public:
@@ -36,7 +33,7 @@ class ImageFiles final : public ImageSequence {
   /// Throws as read_image.
   Image image(int frame) const override { return read_image(file(frame)); }
   std::string name(int frame) const override { return file(frame).string(); }
-  /// Throws as check_image.
+  /// Throws as read_image for a file that is no such image or was cut; its pixels are not decoded.
   void check() const override;
 
  private:

@@ -140,8 +140,7 @@ void write_frames(const Pictures& pictures, const WriteRequest& request,
                   const std::filesystem::path& file, const Context& context) {
   const Eigen::VectorXd times =
       pictures.times.size() == pictures.count ? pictures.times : default_times(pictures.count);
-  const int all = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const int batch = context.threads() > 0 ? context.threads() : all;
+  const int batch = context.thread_count();
   std::unique_ptr<VideoEncoder> encoder;
   Image size;
   for (int first = 0; first < pictures.count; first += batch) {

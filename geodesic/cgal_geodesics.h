@@ -14,8 +14,8 @@ namespace mimetra::geodesic {
 class CgalGeodesics {
  public:
   /// Keeps no reference to the mesh; triangles without area are left out. Throws
-  /// std::invalid_argument as HeatGeodesics, and one that names the vertex where the mesh is not a
-  /// manifold.
+  /// std::invalid_argument as HeatGeodesics, and MismatchError that names the vertex where the mesh
+  /// is not a manifold.
   CgalGeodesics(const Positions& positions, const Triangles& triangles);
   ~CgalGeodesics();
   CgalGeodesics(CgalGeodesics&&) noexcept;
@@ -23,8 +23,9 @@ class CgalGeodesics {
 
   /// Distance from the nearest of `sources` to every vertex (N), in the unit of the positions;
   /// +infinity on components without a source. Safe to call from several threads: each of them
-  /// factors the systems of a component when it first asks. Throws std::out_of_range, and
-  /// std::invalid_argument when there is no source.
+  /// factors the systems of a component when it first asks. Throws std::out_of_range,
+  /// std::invalid_argument when there is no source, and MismatchError where the heat does not reach
+  /// all of a component, which is some hundred edges long.
   Eigen::VectorXd distances(std::span<const VertexIndex> sources) const;
   Eigen::VectorXd distances(VertexIndex source) const;
 

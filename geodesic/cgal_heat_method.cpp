@@ -19,6 +19,7 @@
 
 #include "geodesic/cgal_geodesics.h"
 #include "geodesic/heat_operators.h"
+#include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/surface.h"
 
 namespace mimetra::geodesic {
@@ -266,15 +267,22 @@ class CgalComponent {
       : component_(std::move(component)), surface_(surface_of(component_)) {
     if (surface_.copies() == 0) return;
     const VertexIndex several = surface_.vertex_of(Mesh::VertexHandle(surface_.vertices()));
-    throw std::invalid_argument(
-        "sheets of the surface meet at vertex " + std::to_string(component_.vertices[several]) +
-        ", and CGAL's heat method takes manifolds only; use distances by heat");
+    throw MismatchError("sheets of the surface meet at vertex " +
+                        std::to_string(component_.vertices[several]) +
+                        ", and CGAL's heat method takes manifolds only; use distances by heat");
   }
 
   /// Distance from the nearest of `sources` (N). \pre At least one source.
   Eigen::VectorXd distances(const std::vector<VertexIndex>& sources) const {
     std::unique_ptr<Query> query = idle_query();
     Eigen::VectorXd result = query->distances(sources);
+    // CGAL begins with the largest number and compares it with what may be no number.
+    if (!(result.maxCoeff() < std::numeric_limits<double>::max())) {
+      throw MismatchError("the heat from vertex " +
+                          std::to_string(component_.vertices[sources.front()]) +
+                          " fades before it has reached all of its component, as after some 700 "
+                          "edges; use distances by heat");
+    }
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(query));
     return result;
@@ -348,7 +356,9 @@ class CgalGeodesics::Implementation {
   Implementation(const Positions& positions, const Triangles& triangles)
       : components_(positions, triangles, Degenerate::left_out) {
     for (SurfaceComponent& component : components_.components) {
-      methods_.push_back(std::make_unique<CgalComponent>(component));
+      const std::vector<VertexIndex> vertices = component.vertices;
+      methods_.push_back(std::make_unique<CgalComponent>(std::move(component)));
+      component.vertices = vertices;  // the numbering is needed from here on
     }
   }
 

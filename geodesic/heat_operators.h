@@ -24,8 +24,8 @@ struct HeatOperators {
   std::vector<FlatTriangle> flat;
 };
 
-/// Those of CGAL's Heat_method_3, entry by entry, on its intrinsic Delaunay triangulation or on the
-/// component's own triangles. Throws std::runtime_error.
+/// Those of CGAL's Heat_method_3, up to rounding on a manifold, on its intrinsic Delaunay
+/// triangulation or on the component's own triangles. Throws std::runtime_error.
 HeatOperators heat_operators(const SurfaceComponent& component, bool intrinsic_delaunay);
 
 }  // namespace mimetra::geodesic

@@ -49,6 +49,23 @@ FaceGraph graph_of(const test::Shape& shape) {
   return FaceGraph(mesh.connectivity.vertices, mesh.connectivity.polygons);
 }
 
+/// Triangles around a pole that are written as quads, as on a sphere of Blender's.
+TEST(FaceGraph, JoinsFacesThatRepeatAVertexToTheirNeighbors) {
+  constexpr int kFaces = 5;
+  Polygons polygons{{}, {0}};
+  for (int f = 0; f < kFaces; ++f) {
+    for (const VertexIndex v : {0, 0, 1 + f, 1 + (f + 1) % kFaces}) polygons.corners.push_back(v);
+    polygons.offsets.push_back(4 * (f + 1));
+  }
+  const FaceGraph graph(1 + kFaces, polygons);
+  for (int f = 0; f < kFaces; ++f) {
+    EXPECT_EQ(graph.kind[4 * f], EdgeKind::border);
+    EXPECT_EQ(graph.opposite[4 * f + 1], 4 * ((f + kFaces - 1) % kFaces) + 3);
+    EXPECT_EQ(graph.kind[4 * f + 2], EdgeKind::border);
+    EXPECT_EQ(graph.kind[4 * f + 3], EdgeKind::inner);
+  }
+}
+
 TEST(Colours, AreThoseOfRoundsThatTellNoMoreApart) {
   test::Shape notched = test::grid(7, 6), tangled = test::grid(4, 4), twice = test::sphere(1);
   notched.triangles = Triangles(notched.triangles.bottomRows(notched.triangles.rows() - 1));

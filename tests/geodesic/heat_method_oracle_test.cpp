@@ -1,4 +1,8 @@
-// What CGAL's own heat method hands to its solver; it takes 20 s to compile: no other test sees it.
+// CGAL's own heat method, and what it hands to its solver; it takes 20 s to compile: no other test
+// sees it.
+
+// Its default solver.
+#define CGAL_EIGEN3_ENABLED
 
 #include <CGAL/Heat_method_3/Surface_mesh_geodesic_distances_3.h>
 #include <CGAL/Simple_cartesian.h>
@@ -12,6 +16,7 @@
 #include "tests/geodesic/surfaces.h"
 #include "tests/mesh/captured_performance.h"
 #include "tests/shared_data.h"
+#include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/weld.h"
 
 namespace mimetra::geodesic {
@@ -82,6 +87,18 @@ Mesh mesh_of(const SurfaceComponent& component) {
     mesh.add_face(vertex(t[1]), vertex(t[2]), vertex(t[0]));
   }
   return mesh;
+}
+
+template <typename Mode>
+Eigen::VectorXd distances_of_cgal(const SurfaceComponent& component, VertexIndex source) {
+  Mesh mesh = mesh_of(component);
+  const auto result = mesh.add_property_map<Mesh::Vertex_index, double>("v:distance", 0).first;
+  CGAL::Heat_method_3::Surface_mesh_geodesic_distances_3<Mesh, Mode> heat_method(mesh);
+  heat_method.add_source(Mesh::Vertex_index(static_cast<unsigned>(source)));
+  heat_method.estimate_geodesic_distances(result);
+  Eigen::VectorXd distances(component.positions.rows());
+  for (const auto v : mesh.vertices()) distances[v.idx()] = result[v];
+  return distances;
 }
 
 /// Mass + t L, and L.
@@ -163,6 +180,28 @@ TEST(HeatOperators, AreThoseOfCgalOnTheIntrinsicDelaunayTriangulation) {
   }
 }
 
+/// On meshes of CGAL's own. What is left is rounding, 1e-16 times the conditions of the heat step
+/// and of the Poisson system, each below 1e4 for some thousand triangles.
+TEST(HeatGeodesics, AreThoseOfCgalOnItsOwnMesh) {
+  constexpr double kRounding = 1e-9;
+  for (const Shape& shape : {test::bumpy_sphere(4), sheet()}) {
+    const SurfaceComponents parts(shape.positions, shape.triangles, Degenerate::refused);
+    const SurfaceComponent& component = parts.components.at(0);
+    const HeatGeodesics intrinsic(shape.positions, shape.triangles);
+    const HeatGeodesics direct(shape.positions, shape.triangles, {.intrinsic_delaunay = false});
+    for (const VertexIndex source : {0, 17, 400}) {
+      using CGAL::Heat_method_3::Direct;
+      using CGAL::Heat_method_3::Intrinsic_Delaunay;
+      EXPECT_LT(test::relative_error(intrinsic.distances(source),
+                                     distances_of_cgal<Intrinsic_Delaunay>(component, source)),
+                kRounding);
+      EXPECT_LT(test::relative_error(direct.distances(source),
+                                     distances_of_cgal<Direct>(component, source)),
+                kRounding);
+    }
+  }
+}
+
 TEST(CgalGeodesics, AreTheHeatDistances) {
   for (const Shape& shape : shapes()) {
     const HeatGeodesics heat(shape.positions, shape.triangles);
@@ -193,9 +232,15 @@ TEST(CgalGeodesics, AreTheHeatDistancesFromTheNearestOfSeveral) {
 
 TEST(CgalGeodesics, NameAVertexWhereSheetsMeet) {
   const Shape shape = test::both(test::grid(2, 2), test::touching_squares(3));
-  EXPECT_THAT(
-      [&] { CgalGeodesics(shape.positions, shape.triangles); },
-      testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("meet at vertex 12, ")));
+  EXPECT_THAT([&] { CgalGeodesics(shape.positions, shape.triangles); },
+              testing::ThrowsMessage<MismatchError>(testing::HasSubstr("meet at vertex 12, ")));
+}
+
+TEST(CgalGeodesics, SayWhereHeatFadesOnTheWay) {
+  const Shape strip = test::grid(1200, 3);
+  const CgalGeodesics cgal(strip.positions, strip.triangles);
+  EXPECT_THAT([&] { cgal.distances(0); }, testing::ThrowsMessage<MismatchError>(
+                                              testing::HasSubstr("heat from vertex 0 fades")));
 }
 
 }  // namespace

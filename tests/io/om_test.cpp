@@ -321,6 +321,33 @@ TEST_F(OmFile, HoldsNoSurfaceThatHalfEdgesCannot) {
   EXPECT_FALSE(std::filesystem::exists(path_));
 }
 
+/// Its writer would cut their numbers off.
+TEST_F(OmFile, HoldsVerticesAsFarAsItsEdgesHaveBytes) {
+  const auto triangle = [](VertexIndex last) {
+    return TriMesh{Positions::Random(last + 1, 3),
+                   Connectivity::from_polygons(last + 1, {{0, 1, last}, {0, 3}})};
+  };
+  write_mesh(path_, triangle(127));
+  EXPECT_EQ(read_mesh(path_).connectivity.triangles, triangle(127).connectivity.triangles);
+  EXPECT_THAT(test::message_of<MismatchError>([&] { write_mesh(path_, triangle(257)); }),
+              HasSubstr("a face uses vertex 257, and OpenMesh's files of 3 edges hold vertices "
+                        "below 128; remove vertices without faces, or write another format"));
+  // 65 edges and more have two bytes.
+  const auto strip = [](VertexIndex last) {
+    test::Shape shape = test::grid(20, 2);
+    shape.triangles = (shape.triangles.array() == 39).select(last, shape.triangles);
+    Positions positions = Positions::Random(last + 1, 3);
+    positions.topRows(40) = shape.positions;
+    return TriMesh{positions, Connectivity::from_triangles(last + 1, shape.triangles)};
+  };
+  for (const VertexIndex last : {257, 32767}) {
+    write_mesh(path_, strip(last));
+    EXPECT_EQ(read_mesh(path_).connectivity.triangles, strip(last).connectivity.triangles);
+  }
+  EXPECT_THAT(test::message_of<MismatchError>([&] { write_mesh(path_, strip(40000)); }),
+              HasSubstr("a face uses vertex 40000"));
+}
+
 TEST_F(OmFile, HoldsNoFieldThatOpenMeshDropsOrCuts) {
   const TriMesh mesh = from_openmesh(strip<FloatMesh>());
   const auto refusal = [&](const std::string& name, int columns) {

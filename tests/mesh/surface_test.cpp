@@ -197,6 +197,21 @@ TEST(Surface, ShowsAllSidesOfEachEdge) {
                                  ElementsAre(7), ElementsAre(0), ElementsAre(4), ElementsAre(8)));
 }
 
+TEST(Surface, ShowsSidesOfCollapsedFacesWhereTheyAreKept) {
+  const Polygons polygons{{0, 0, 1, 2, 1, 0, 3}, {0, 4, 7}};
+  std::vector<std::vector<int>> edges;
+  const auto keep = [&edges](std::span<const int> sides) {
+    edges.emplace_back(sides.begin(), sides.end());
+  };
+  EdgeSides(4, polygons).for_each_edge(keep);
+  EXPECT_THAT(edges, ElementsAre(ElementsAre(4), ElementsAre(5), ElementsAre(6)));
+  edges.clear();
+  EdgeSides(4, polygons, Collapsed::kept).for_each_edge(keep);
+  // 01, 02, 03, 12, 13
+  EXPECT_THAT(edges, ElementsAre(ElementsAre(1, 4), ElementsAre(3), ElementsAre(5), ElementsAre(2),
+                                 ElementsAre(6)));
+}
+
 TEST(Surface, CrossesSeamsThatAreWelded) {
   test::Shape right = test::grid(3, 4);
   right.positions.col(0).array() += 2;
@@ -216,12 +231,12 @@ TEST(Surface, NamesAFaceWithABadVertex) {
       [] {
         Surface(3, triangles_of({{{0, 1, 2}}, {{0, 1, 3}}}));
       },
-      ThrowsMessage<std::invalid_argument>(HasSubstr("triangle 1 uses vertex 3, expected 0 to 2")));
+      ThrowsMessage<std::invalid_argument>(HasSubstr("face 1 uses vertex 3, expected 0 to 2")));
   EXPECT_THAT(
       [] {
         Surface(3, triangles_of({{{0, -1, 2}}}));
       },
-      ThrowsMessage<std::invalid_argument>(HasSubstr("triangle 0 uses vertex -1")));
+      ThrowsMessage<std::invalid_argument>(HasSubstr("face 0 uses vertex -1")));
 }
 
 TEST(WithinReach, FindsWhatIsNearAndHowFar) {
@@ -274,6 +289,11 @@ TEST(ConnectedComponents, OfAnySoupAreThoseThatSpread) {
   }
 }
 
+TEST(ConnectedComponents, OfALongStripAreOne) {
+  const test::Shape shape = test::grid(2000, 2);
+  EXPECT_EQ(connected_components(int(shape.positions.rows()), shape.triangles).count, 1);
+}
+
 TEST(ConnectedComponents, HangTogetherAcrossSeamsThatAreWelded) {
   test::Shape shape = test::both(test::grid(2, 2), test::grid(2, 2));
   shape.positions.bottomRows(4).col(0).array() += 1;
@@ -289,7 +309,7 @@ TEST(ConnectedComponents, NameATriangleWithABadIndex) {
       [] {
         connected_components(3, triangles_of({{{0, 1, 2}}, {{0, 1, 3}}}));
       },
-      ThrowsMessage<std::invalid_argument>(HasSubstr("triangle 1 uses vertex 3, expected 0 to 2")));
+      ThrowsMessage<std::invalid_argument>(HasSubstr("face 1 uses vertex 3, expected 0 to 2")));
 }
 
 }  // namespace

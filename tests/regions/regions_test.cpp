@@ -342,17 +342,6 @@ TEST(ReadRegions, NameTheFirstVertexOutsideTheMesh) {
           HasSubstr("region 1 holds vertex 6; the mesh has vertices 0 to 5")));
 }
 
-TEST(ReadRegions, CanComeFromTheNumberThatEachVertexHas) {
-  const test::Shape shape = test::octahedron();
-  const Regions regions = regions_from_labels({7, -1, 2, 7, -1, -3}, shape.triangles);
-  ASSERT_EQ(regions.regions.size(), 2U);
-  EXPECT_THAT(regions.regions[0].vertices, testing::ElementsAre(2));
-  EXPECT_THAT(regions.regions[1].vertices, testing::ElementsAre(0, 3));
-  EXPECT_EQ(regions.triangles, regions_from_vertices(6, shape.triangles, {{2}, {0, 3}}).triangles);
-  EXPECT_THROW(regions_from_labels({-1, -1, -1, -1, -1, -1}, shape.triangles),
-               std::invalid_argument);
-}
-
 TEST(AllTriangles, AreAll) {
   EXPECT_THAT(all_triangles(grid(2, 3).triangles), ElementsAre(0, 1, 2, 3));
 }

@@ -11,8 +11,8 @@
 #include "toolkit/correspondence/correspondence.h"
 #include "toolkit/io/correspondence_file.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 #include "toolkit/operations/reports.h"
-#include "toolkit/operations/xml_text.h"
 #include "toolkit/report/report_page.h"
 #include "toolkit/report/viewer_data.h"
 

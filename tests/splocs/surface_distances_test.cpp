@@ -178,6 +178,15 @@ TEST(SurfaceDistances, NameEveryVertexOfAPlaceWithoutFace) {
               ElementsAre(positions.rows() - 2, positions.rows() - 1));
 }
 
+TEST(SurfaceDistances, FromTheNearestOfSeveralAreTheSameByCgal) {
+  const Shape shape = test::grid(20, 20);
+  const Weld none = Weld::none(int(shape.positions.rows()));
+  const std::vector<VertexIndex> sources = {0, 21, 42, 200};
+  const SurfaceDistances heat(shape.positions, shape.triangles, none, GeodesicMethod::heat);
+  const SurfaceDistances cgal(shape.positions, shape.triangles, none, GeodesicMethod::cgal);
+  EXPECT_TRUE(cgal.from_nearest(sources).isApprox(heat.from_nearest(sources), 1e-12));
+}
+
 TEST(SurfaceDistances, RefuseSourcesThatDoNotExist) {
   const SurfaceDistances distances = welded_distances(test::octahedron());
   EXPECT_THROW(distances(-1), std::out_of_range);

@@ -115,7 +115,8 @@ FaceGraph::FaceGraph(int vertices, const Polygons& polygons)
       next[h] = h + 1 < polygons.offsets[f + 1] ? h + 1 : polygons.offsets[f];
     }
   }
-  EdgeSides(vertices, polygons).for_each_edge([this](std::span<const int> sides) {
+  const EdgeSides edges(vertices, polygons, Collapsed::kept);
+  edges.for_each_edge([this](std::span<const int> sides) {
     if (sides.size() == 2 && vertex[sides[0]] != vertex[sides[1]]) {
       opposite[sides[0]] = sides[1];
       opposite[sides[1]] = sides[0];

@@ -15,7 +15,7 @@ namespace mimetra {
 /// What lies beyond a side of a face.
 enum class EdgeKind : std::uint8_t {
   inner,    ///< one other face, oriented alike
-  border,   ///< nothing; also for all sides of a face that repeats a vertex
+  border,   ///< nothing; also for a side from a vertex to itself
   tangled,  ///< more than one other face, or one oriented the other way
 };
 

@@ -105,12 +105,29 @@ class SilentLog {
   bool was_enabled_;
 };
 
+/// OpenMesh's writer stores all numbers of the connectivity in as many bytes as four times the
+/// number of edges needs, and cuts off what is left of a vertex's number.
+void check_vertices_of_faces(const Connectivity& connectivity, std::size_t edges) {
+  const std::size_t largest = 4 * edges;
+  const int limit = largest <= 0x100     ? 0x80
+                    : largest <= 0x10000 ? 0x8000
+                                         : std::numeric_limits<int>::max();
+  for (const VertexIndex v : connectivity.polygons.corners) {
+    if (v < limit) continue;
+    throw MismatchError("a face uses vertex " + std::to_string(v) + ", and OpenMesh's files of " +
+                        std::to_string(edges) + " edges hold vertices below " +
+                        std::to_string(limit) +
+                        "; remove vertices without faces, or write another format");
+  }
+}
+
 /// A file whose vertices are all at the origin.
 template <typename Traits>
 std::string om_bytes(const Connectivity& connectivity, const std::vector<Field>& fields,
                      const Context& context) {
   context.report(0);
   auto mesh = half_edges_of<OpenMesh::PolyMesh_ArrayKernelT<Traits>>(connectivity);
+  check_vertices_of_faces(connectivity, mesh.n_edges());
   for (const Field& field : fields) {
     const bool on_vertices = field.location == Field::Location::vertices;
     const Eigen::Index expected =

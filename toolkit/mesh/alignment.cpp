@@ -38,7 +38,7 @@ constexpr double kLeastWeight = 1e-10;
 /// The scale stops at this share of the box; positions of double precision carry 1e-15 of it.
 constexpr double kLeastScale = 1e-12;
 /// Motion below this share of the box is what kLeastWeight and rounding leave.
-constexpr double kLeastMotion = 1e-9;
+constexpr double kLeastHeadMotion = 1e-9;
 /// Motion within so many standard errors of the fit is noise.
 constexpr double kSignificance = 3;
 /// The fit, beside the one pass that judges it, as a part of its progress.
@@ -205,7 +205,7 @@ bool is_significant(const FrameSource& source, const StableFit& fit) {
   const double residual = std::sqrt(shares.dot(fit.residuals.cwiseAbs2()));
   const double points = 1 / shares.squaredNorm();
   return found > std::max(kSignificance * residual * std::sqrt(2 / points),
-                          kLeastMotion * box_diagonal(source.rest()));
+                          kLeastHeadMotion * box_diagonal(source.rest()));
 }
 
 using Halves = std::array<Eigen::VectorXd, 2>;

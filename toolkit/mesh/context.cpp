@@ -1,7 +1,9 @@
 #include "toolkit/mesh/context.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <thread>
 #include <utility>
 
 #include "toolkit/mesh/errors.h"
@@ -94,6 +96,11 @@ Context Context::quiet() const {
 Context Context::without_ranks() const {
   if (ranks().count() == 1) return *this;
   return with_ranks(kAlone);
+}
+
+int Context::thread_count() const {
+  return threads_ > 0 ? threads_
+                      : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 Context Context::serial() const {

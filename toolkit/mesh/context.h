@@ -84,6 +84,8 @@ class Context {
   Context serial() const;
 
   int threads() const { return threads_; }
+  /// The same, or as many as the machine has where that is 0.
+  int thread_count() const;
   std::optional<double> memory() const;
   /// The processes that share the computation; this one alone unless with_ranks() named others.
   const Ranks& ranks() const;

@@ -60,17 +60,6 @@ std::vector<VertexIndex> vertices_without_face(int vertices, const Triangles& tr
   return unused;
 }
 
-/// With the one edge of each face that repeats a vertex: such a face gets a third corner of its
-/// own.
-EdgeSides sides_of_all(int vertices, Triangles triangles) {
-  EdgeSides sides(vertices, triangles);
-  if (sides.left_out().empty()) return sides;
-  for (const int t : sides.left_out()) {
-    triangles(t, triangles(t, 1) == triangles(t, 2) ? 1 : 0) = vertices++;
-  }
-  return {vertices, triangles};
-}
-
 }  // namespace
 
 int almost_welded_vertices(const Positions& positions, const Triangles& triangles) {
@@ -113,6 +102,7 @@ MeshReport inspect(const Positions& positions, const Connectivity& connectivity)
   const Triangles& triangles = connectivity.triangles;
   const Weld weld = Weld::exact(positions);
   const EdgeCounts edges = count_edges(connectivity.vertices, triangles);
+  const std::vector<int> degenerate = degenerate_triangles(positions, triangles);
 
   MeshReport report;
   report.vertices = connectivity.vertices;
@@ -122,12 +112,15 @@ MeshReport inspect(const Positions& positions, const Connectivity& connectivity)
   report.components_after_welding = components_with_triangle(triangles, weld);
   report.boundary_edges = edges.boundary;
   report.boundary_edges_after_welding =
-      count_edges(report.vertices, weld.welded(triangles)).boundary;
+      weld.count == 0 ? edges.boundary
+                      : count_edges(report.vertices, weld.welded(triangles)).boundary;
   report.nonmanifold_edges = edges.nonmanifold;
   // A triangle without area has no side.
   report.inconsistent_edges =
-      count_edges(report.vertices, with_area(positions, triangles)).inconsistent;
-  report.degenerate_triangles = degenerate_triangles(positions, triangles);
+      degenerate.empty()
+          ? edges.inconsistent
+          : count_edges(report.vertices, with_area(positions, triangles)).inconsistent;
+  report.degenerate_triangles = degenerate;
   report.vertices_without_face = vertices_without_face(report.vertices, triangles);
   report.welded_vertices = weld.count;
   report.almost_welded_vertices = almost_welded_vertices(positions, triangles);
@@ -139,10 +132,11 @@ MeshReport inspect(const Positions& positions, const Connectivity& connectivity)
 
 std::vector<std::vector<int>> triangle_neighbors(int vertices, const Triangles& triangles) {
   std::vector<std::vector<int>> neighbors(triangles.rows());
-  sides_of_all(vertices, triangles).for_each_edge([&](std::span<const int> sides) {
+  const EdgeSides edges(vertices, triangles, Collapsed::kept);
+  edges.for_each_edge([&](std::span<const int> sides) {
     for (const int a : sides) {
       for (const int b : sides) {
-        if (a != b) neighbors[a / 3].push_back(b / 3);
+        if (a / 3 != b / 3) neighbors[a / 3].push_back(b / 3);
       }
     }
   });

@@ -59,8 +59,7 @@ class Loop {
 }  // namespace
 
 void parallel_for(int count, const std::function<void(int)>& work, const Context& context) {
-  const int machine = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const int used = std::min(context.threads() > 0 ? context.threads() : machine, count);
+  const int used = std::min(context.thread_count(), count);
   Loop loop(count, work);
   int reported = 0;
   {

@@ -21,14 +21,16 @@ void check_indices(int vertices, std::span<const VertexIndex> corners,
   if (outside == corners.end()) return;
   const auto corner = static_cast<int>(outside - corners.begin());
   const auto face = std::ranges::upper_bound(offsets, corner) - offsets.begin() - 1;
-  throw std::invalid_argument("triangle " + std::to_string(face) + " uses vertex " +
+  throw std::invalid_argument("face " + std::to_string(face) + " uses vertex " +
                               std::to_string(*outside) + ", expected 0 to " +
                               std::to_string(vertices - 1));
 }
 
-std::vector<int> faces_that_repeat_a_vertex(std::span<const VertexIndex> corners,
-                                            const std::vector<int>& offsets) {
+/// Faces that have a vertex twice, ascending; none where they are kept.
+std::vector<int> left_out_of(std::span<const VertexIndex> corners, const std::vector<int>& offsets,
+                             Collapsed collapsed) {
   std::vector<int> faces;
+  if (collapsed == Collapsed::kept) return faces;
   std::vector<VertexIndex> around;
   for (std::size_t face = 0; face + 1 < offsets.size(); ++face) {
     around.assign(corners.begin() + offsets[face], corners.begin() + offsets[face + 1]);
@@ -271,16 +273,17 @@ std::vector<int> offsets_of(const Triangles& triangles) {
 
 }  // namespace
 
-EdgeSides::EdgeSides(int vertices, const Triangles& triangles)
-    : EdgeSides(vertices, corners_of(triangles), offsets_of(triangles)) {}
+EdgeSides::EdgeSides(int vertices, const Triangles& triangles, Collapsed collapsed)
+    : EdgeSides(vertices, corners_of(triangles), offsets_of(triangles),
+                left_out_of(corners_of(triangles), offsets_of(triangles), collapsed)) {}
 
-EdgeSides::EdgeSides(int vertices, const Polygons& polygons)
-    : EdgeSides(vertices, polygons.corners, polygons.offsets) {}
+EdgeSides::EdgeSides(int vertices, const Polygons& polygons, Collapsed collapsed)
+    : EdgeSides(vertices, polygons.corners, polygons.offsets,
+                left_out_of(polygons.corners, polygons.offsets, collapsed)) {}
 
 EdgeSides::EdgeSides(int vertices, std::span<const VertexIndex> corners,
-                     const std::vector<int>& offsets) {
+                     const std::vector<int>& offsets, const std::vector<int>& left_out) {
   check_indices(vertices, corners, offsets);
-  left_out_ = faces_that_repeat_a_vertex(corners, offsets);
   // Sides by their lower vertex, counted and then filled in.
   struct Side {
     VertexIndex high;
@@ -288,9 +291,9 @@ EdgeSides::EdgeSides(int vertices, std::span<const VertexIndex> corners,
     auto operator<=>(const Side&) const = default;
   };
   const auto for_each_side = [&](const auto& use) {
-    auto skipped = left_out_.begin();
+    auto skipped = left_out.begin();
     for (int face = 0; face + 1 < std::ssize(offsets); ++face) {
-      if (skipped != left_out_.end() && *skipped == face) {
+      if (skipped != left_out.end() && *skipped == face) {
         ++skipped;
         continue;
       }
@@ -300,7 +303,7 @@ EdgeSides::EdgeSides(int vertices, std::span<const VertexIndex> corners,
         const auto [low, high] =
             std::minmax(corners[static_cast<std::size_t>(c)],
                         corners[static_cast<std::size_t>(c + 1 < end ? c + 1 : first)]);
-        use(static_cast<std::size_t>(low), Side{high, c});
+        if (low != high) use(static_cast<std::size_t>(low), Side{high, c});
       }
     }
   };
@@ -338,8 +341,8 @@ Surface::Surface(const Triangles& triangles, const Weld& weld)
 
 Surface::Surface(int vertices, std::vector<VertexIndex> vertex_of_corner, std::vector<int> offsets)
     : vertices_(vertices) {
-  const EdgeSides edges(vertices, vertex_of_corner, offsets);
-  left_out_ = edges.left_out();
+  left_out_ = left_out_of(vertex_of_corner, offsets, Collapsed::left_out);
+  const EdgeSides edges(vertices, vertex_of_corner, offsets, left_out_);
   Corners corners(std::move(vertex_of_corner), std::move(offsets));
   std::vector<int> twin = twins_of(edges, corners.count());
   turned_ = faces_to_turn(corners, twin);
@@ -411,7 +414,7 @@ ConnectedComponents connected_components(const Triangles& triangles, const Weld&
   check_indices(vertices, corners_of(triangles), offsets_of(triangles));
   DisjointSets sets(vertices);
   for (VertexIndex v = 0; v < vertices; ++v) {
-    sets.join(v, weld.representative[static_cast<std::size_t>(v)]);
+    sets.join(v, weld.representative.at(static_cast<std::size_t>(v)));
   }
   for (const auto& triangle : triangles.rowwise()) {
     sets.join(triangle[0], triangle[1]);

@@ -10,14 +10,20 @@
 
 namespace mimetra {
 
+/// Faces that have a vertex twice.
+enum class Collapsed { left_out, kept };
+
 /// The sides of a mesh's faces, by their edges. Corners are counted face after face, so that number
-/// c of triangle t is 3 t + c; a side is named by the corner that it starts from.
+/// c of triangle t is 3 t + c; a side is named by the corner that it starts from, and ends at the
+/// face's next one.
 class EdgeSides {
  public:
+  /// Collapsed faces that are kept have sides but for those from a vertex to itself.
+  ///
   /// Throws std::invalid_argument that names the first face with a vertex outside 0 ..
-  /// `vertices` - 1.
-  EdgeSides(int vertices, const Triangles& triangles);
-  EdgeSides(int vertices, const Polygons& polygons);
+  /// `vertices` - 1. \pre offsets of polygons are those of Connectivity::from_polygons()
+  EdgeSides(int vertices, const Triangles& triangles, Collapsed collapsed = Collapsed::left_out);
+  EdgeSides(int vertices, const Polygons& polygons, Collapsed collapsed = Collapsed::left_out);
 
   /// Calls `visit` for each edge, by its lower, then by its higher vertex, with all its sides: a
   /// std::span<const int>, ascending.
@@ -30,16 +36,13 @@ class EdgeSides {
     }
   }
 
-  /// Faces that have a vertex twice, ascending. They have no sides here.
-  const std::vector<int>& left_out() const { return left_out_; }
-
  private:
   friend class Surface;
-  EdgeSides(int vertices, std::span<const VertexIndex> corners, const std::vector<int>& offsets);
+  EdgeSides(int vertices, std::span<const VertexIndex> corners, const std::vector<int>& offsets,
+            const std::vector<int>& left_out);
 
   std::vector<int> sides_;          // edge by edge
   std::vector<int> first_of_edge_;  // and the end
-  std::vector<int> left_out_;
 };
 
 /// The connectivity of any mesh as OpenMesh half-edges, to walk along.

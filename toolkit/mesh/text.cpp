@@ -178,4 +178,30 @@ std::string suggestion_for(const std::string& word, const std::vector<std::strin
   return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
 }
 
+std::string escaped_for_xml(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      case '\'':
+        result += "&#39;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
+
 }  // namespace mimetra

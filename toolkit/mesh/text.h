@@ -61,4 +61,7 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
 /// "; did you mean 'WORD'?" with that one, to end a message; empty where there is none.
 std::string suggestion_for(const std::string& word, const std::vector<std::string>& known);
 
+/// `text` as XML and HTML hold it, between tags and in attributes.
+std::string escaped_for_xml(const std::string& text);
+
 }  // namespace mimetra

@@ -79,7 +79,10 @@ void Weld::check(const Positions& positions, double tolerance) const {
 }
 
 Triangles Weld::welded(const Triangles& triangles) const {
-  return triangles.unaryExpr([this](VertexIndex vertex) { return representative.at(vertex); });
+  const auto vertices = static_cast<VertexIndex>(representative.size());
+  return triangles.unaryExpr([&](VertexIndex vertex) {
+    return vertex >= 0 && vertex < vertices ? representative[vertex] : vertex;
+  });
 }
 
 std::vector<VertexIndex> parting_vertices(const FrameSource& sequence, const Weld& weld,

@@ -25,7 +25,7 @@ struct Weld {
   /// vertex.
   void check(const Positions& positions, double tolerance = 0) const;
 
-  /// The same triangles on representatives, M x 3.
+  /// The same triangles on representatives, M x 3. An index out of range stays.
   Triangles welded(const Triangles& triangles) const;
 };
 

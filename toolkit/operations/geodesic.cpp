@@ -64,12 +64,10 @@ bool is_exact(const Invocation& invocation) {
 }
 
 double memory_of_geodesic(const Invocation& invocation) {
-  // Factors, with their fill-in: measured on surfaces of 7 to 325 thousand vertices.
-  constexpr double kOfVertex = 3700;
   const int vertices = invocation.sequence("mesh").vertices();
   return is_exact(invocation)
              ? distance_bytes(GeodesicMethod::exact, vertices, 1, invocation.context)
-             : kOfVertex * vertices;
+             : kHeatBytesPerVertex * vertices;
 }
 
 /// Throws where there is nothing to measure, or not the memory for it.

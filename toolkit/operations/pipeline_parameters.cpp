@@ -223,6 +223,18 @@ BoundParameters<AnalysisOptions> analysis_parameters() {
   return list.under(kDecompositionGroup);
 }
 
+RegionChoiceOptions with_most_discs(RegionChoiceOptions options, const Parameters& parameters) {
+  options.discs = {};
+  if (options.select == Selector::transfer && parameters.is_set("k") &&
+      parameters.find("k")->kind == ParameterKind::integer) {
+    options.discs = parameters.integer("k");
+  }
+  return options;
+}
+
+namespace {
+
+/// --select, --triangles and --drop-rims.
 BoundParameters<RegionChoiceOptions> selection_parameters() {
   using Options = RegionChoiceOptions;
   BoundParameters<Options> list;
@@ -239,14 +251,7 @@ BoundParameters<RegionChoiceOptions> selection_parameters() {
            "make no regions by energy on the rim of the surface, where a scan ends");
 }
 
-RegionChoiceOptions with_most_discs(RegionChoiceOptions options, const Parameters& parameters) {
-  options.discs = {};
-  if (options.select == Selector::transfer && parameters.is_set("k") &&
-      parameters.find("k")->kind == ParameterKind::integer) {
-    options.discs = parameters.integer("k");
-  }
-  return options;
-}
+}  // namespace
 
 BoundParameters<RegionChoiceOptions> region_parameters() {
   using Options = RegionChoiceOptions;

@@ -69,9 +69,6 @@ BoundParameters<Options> blendshape_parameters() {
            "up or down, and in or out; all: jawOpen or mouthClose, too");
 }
 
-/// --select, --triangles and --drop-rims.
-BoundParameters<RegionChoiceOptions> selection_parameters();
-
 /// The options with what -k says where regions are chosen for the transfer: discs at most, and any
 /// number of them where nobody says so.
 RegionChoiceOptions with_most_discs(RegionChoiceOptions options, const Parameters& parameters);

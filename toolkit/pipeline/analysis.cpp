@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <thread>
 #include <utility>
 
 #include "toolkit/mesh/errors.h"
@@ -77,13 +76,13 @@ SurfaceDistances distances_along(const Positions& rest, const Triangles& triangl
 
 double distance_bytes(GeodesicMethod method, Eigen::Index vertices, int sources,
                       const Context& context) {
-  if (method != GeodesicMethod::exact) return 0;
+  const int threads = std::min(context.thread_count(), sources);
+  const auto count = static_cast<double>(vertices);
   // CGAL's sequence trees: measured on faces of 7 to 105 thousand vertices.
   constexpr double kOfTree = 210;
-  const int most = context.threads() > 0
-                       ? context.threads()
-                       : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  return std::min(most, sources) * kOfTree * std::pow(static_cast<double>(vertices), 1.5);
+  if (method == GeodesicMethod::exact) return threads * kOfTree * std::pow(count, 1.5);
+  if (method == GeodesicMethod::cgal) return threads * kHeatBytesPerVertex * count;
+  return 0;
 }
 
 Context beside_distances(GeodesicMethod method, Eigen::Index vertices, int sources,
@@ -92,7 +91,7 @@ Context beside_distances(GeodesicMethod method, Eigen::Index vertices, int sourc
   const std::optional<double> memory = context.memory();
   if (!memory || bytes == 0) return context;
   if (bytes > *memory) {
-    throw MismatchError("option 'memory': exact distances along " + std::to_string(vertices) +
+    throw MismatchError("option 'memory': these distances along " + std::to_string(vertices) +
                         " vertices take " + fixed(std::ceil(bytes / 1e6), 0) +
                         " MB on all threads; allow more, take fewer threads, or distances by heat");
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <thread>
 #include <utility>
 
 #include "toolkit/mesh/frame_store.h"
@@ -343,18 +342,10 @@ namespace {
 
 constexpr double kNumber = sizeof(double);
 
-/// The factors of a mesh's sparse systems and its adjacency: measured on faces of 3 to 7 thousand
-/// vertices, where fill-in grows little.
-constexpr double kFactorsPerVertex = 2000;
-
 /// A transfer's constant vectors, and for each thread sixteen frames: read, gathered, their sums,
 /// what the sums are solved for, and the result.
 constexpr double kPullPerTriangle = 72;
 constexpr double kLanesPerVertex = 5 * 3 * 16 * kNumber;
-
-double threads_of(const Context& context) {
-  return context.threads() > 0 ? context.threads() : std::thread::hardware_concurrency();
-}
 
 /// What a FrameStore has in memory: more frames are in its file.
 double kept_bytes(double all) {
@@ -415,7 +406,7 @@ double solution_bytes(const FrameSource& sequence, const BlendshapeModel& target
   if (options.smoothness > 0) {
     space += has_vertices ? poses : kNumber * 4 * sequence.frames() * expressions * expressions;
   }
-  const double threads = threads_of(context);
+  const double threads = context.thread_count();
   return space + kPullPerTriangle * triangles + threads * kLanesPerVertex * vertices;
 }
 
@@ -423,7 +414,7 @@ double regional_bytes(const FrameSource& sequence, const BlendshapeModel& target
                       const Context& context) {
   const auto expressions = static_cast<double>(target.expressions().size());
   const double unknowns = (regions + 1) * expressions;
-  const double threads = threads_of(context);
+  const double threads = context.thread_count();
   // The Gram matrix, the system and for each thread its factor; each thread's fields of a region,
   // gathered and shared out; the shares, twice, and the weights.
   return kNumber *

@@ -115,8 +115,7 @@ class TriangleSum {
   double sum_ = 0;
 };
 
-}  // namespace
-
+/// Triangles of each vertex, ascending (N).
 std::vector<std::vector<int>> triangles_of_vertices(int vertices, const Triangles& triangles) {
   std::vector<std::vector<int>> of_vertex(vertices);
   for (int t = 0; t < triangles.rows(); ++t) {
@@ -125,6 +124,8 @@ std::vector<std::vector<int>> triangles_of_vertices(int vertices, const Triangle
   return of_vertex;
 }
 
+/// The disc around a vertex from which the distances to all are known (N). `inside` (N, empty for
+/// all): vertices that it may hold.
 Disc disc_around(VertexIndex center, const Eigen::Ref<const Eigen::VectorXd>& distances,
                  double radius, const std::vector<std::vector<int>>& triangles_of_vertex,
                  const std::vector<bool>& inside) {
@@ -143,6 +144,8 @@ Disc disc_around(VertexIndex center, const Eigen::Ref<const Eigen::VectorXd>& di
                        disc.triangles.end());
   return disc;
 }
+
+}  // namespace
 
 DiscSearch::DiscSearch(Positions positions, Triangles triangles, DistanceFunction distances,
                        double radius, std::vector<bool> inside)

@@ -14,15 +14,6 @@ struct Disc {
   std::vector<int> triangles;         ///< with a vertex in the disc, ascending
 };
 
-/// Triangles of each vertex, ascending (N). `triangles` M x 3.
-std::vector<std::vector<int>> triangles_of_vertices(int vertices, const Triangles& triangles);
-
-/// The disc around a vertex from which the distances to all are known (N). `inside` (N, empty for
-/// all): vertices that it may hold.
-Disc disc_around(VertexIndex center, const Eigen::Ref<const Eigen::VectorXd>& distances,
-                 double radius, const std::vector<std::vector<int>>& triangles_of_vertex,
-                 const std::vector<bool>& inside);
-
 /// Looks for discs of one radius that hold much of a quantity on the triangles. Centres are
 /// compared that are a quarter of the radius apart from each other; a disc is measured along the
 /// surface only where the ball around its centre, which holds more, could still win.

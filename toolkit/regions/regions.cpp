@@ -409,18 +409,6 @@ Regions regions_from_vertices(int vertices, const Triangles& triangles,
   return regions;
 }
 
-Regions regions_from_labels(const std::vector<int>& labels, const Triangles& triangles) {
-  std::map<int, std::vector<VertexIndex>> vertices_of;
-  for (std::size_t v = 0; v < labels.size(); ++v) {
-    if (labels[v] >= 0) vertices_of[labels[v]].push_back(static_cast<VertexIndex>(v));
-  }
-  if (vertices_of.empty()) throw std::invalid_argument("labels: no vertex is in a region");
-  std::vector<std::vector<VertexIndex>> lists;
-  lists.reserve(vertices_of.size());
-  for (auto& [label, vertices] : vertices_of) lists.push_back(std::move(vertices));
-  return regions_from_vertices(static_cast<int>(labels.size()), triangles, lists);
-}
-
 void check_weights(const Eigen::VectorXd& weights, Eigen::Index vertices) {
   if (weights.size() != vertices) {
     throw std::invalid_argument("weights: expected one for each of " + std::to_string(vertices) +

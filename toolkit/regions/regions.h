@@ -138,11 +138,6 @@ Regions carried_regions(const Regions& regions, const Simplification& simplified
 Regions regions_from_vertices(int vertices, const Triangles& triangles,
                               const std::vector<std::vector<VertexIndex>>& lists);
 
-/// One region for each number above or equal to 0 among `labels` (N), ascending, as the field
-/// `region` holds them; vertices of negative ones are in none. Throws std::invalid_argument for no
-/// such number.
-Regions regions_from_labels(const std::vector<int>& labels, const Triangles& triangles);
-
 /// Throws std::invalid_argument, which begins with `weights`, unless there is one weight in [0, 1]
 /// for each of so many vertices.
 void check_weights(const Eigen::VectorXd& weights, Eigen::Index vertices);

@@ -6,7 +6,6 @@
 #include <future>
 
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/xml_text.h"
 #include "toolkit/report/viewer_data.h"
 
 namespace mimetra {

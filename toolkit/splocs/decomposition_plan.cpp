@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <thread>
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
@@ -13,10 +12,6 @@ namespace mimetra {
 namespace {
 
 constexpr double kNumber = sizeof(double);
-
-/// The factors of a mesh's sparse systems and its adjacency: measured on faces of 3 to 7 thousand
-/// vertices, where fill-in grows little.
-constexpr double kFactorsPerVertex = 2000;
 
 /// Components have so many different centres on their way, whose distances are kept as far as
 /// SurfaceDistances does: measured with K = 40.
@@ -80,11 +75,6 @@ struct Sizes {
   double per_thread() const { return kBlocksPerThread * block() + kSumsPerThread * sums(); }
 };
 
-int threads_of(const Context& context) {
-  if (context.threads() > 0) return context.threads();
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
-
 /// Passes over the motion: energies, one for each component of the start, the first products, and
 /// one for each iteration.
 double passes(const DecompositionOptions& options) {
@@ -122,7 +112,7 @@ DecompositionPlan planned_decomposition(const FrameSource& frames, const VertexP
                                         const Context& context) {
   const Sizes sizes{static_cast<double>(frames.frames()), static_cast<double>(part.vertices()),
                     static_cast<double>(part.mesh_vertices()), static_cast<double>(options.count)};
-  const int threads = threads_of(context);
+  const int threads = context.thread_count();
   const std::optional<double> memory = context.memory();
   const bool wants_basis = options.basis_tolerance > 0;
   const double worth = wants_basis ? frames.frames() / 2 : 0;

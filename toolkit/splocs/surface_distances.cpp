@@ -42,7 +42,10 @@ Geodesics prepared(const Positions& positions, const Triangles& triangles, Geode
     return one_at_a_time<geodesic::ExactGeodesics>(positions, triangles);
   }
   if (method == GeodesicMethod::cgal) {
-    return one_at_a_time<geodesic::CgalGeodesics>(positions, triangles);
+    const auto cgal = std::make_shared<const geodesic::CgalGeodesics>(positions, triangles);
+    return {one_by_one([cgal](VertexIndex source) { return cgal->distances(source); }),
+            [cgal](std::span<const VertexIndex> sources) { return cgal->distances(sources); }, 1,
+            cgal->degenerate_triangles(), cgal->vertices_without_face()};
   }
   const geodesic::HeatOptions options{.intrinsic_delaunay = method == GeodesicMethod::heat};
   const auto heat = std::make_shared<const geodesic::HeatGeodesics>(positions, triangles, options);
@@ -57,14 +60,6 @@ void check_size(const Positions& positions, const Weld& weld) {
   throw std::invalid_argument("a weld of " + std::to_string(weld.representative.size()) +
                               " vertices, expected " + std::to_string(positions.rows()) +
                               " as in the mesh");
-}
-
-/// Weld::welded, but an index out of range stays: the geodesics name its triangle.
-Triangles welded(const Triangles& triangles, const Weld& weld) {
-  const auto vertices = static_cast<VertexIndex>(weld.representative.size());
-  return triangles.unaryExpr([&](VertexIndex vertex) {
-    return vertex >= 0 && vertex < vertices ? weld.representative[vertex] : vertex;
-  });
 }
 
 /// Distances from the sources that were asked for last.
@@ -168,7 +163,7 @@ SurfaceDistances::SurfaceDistances(const Positions& positions, const Triangles& 
   check_size(positions, weld);
   state_->weld = weld;
   state_->threads = context.threads();
-  state_->geodesics = prepared(positions, welded(triangles, weld), method);
+  state_->geodesics = prepared(positions, weld.welded(triangles), method);
   // The others of a welded group lose their triangles to the one that stands for them.
   auto& faceless = state_->geodesics.vertices_without_face;
   std::erase_if(faceless, [&weld, known = faceless](VertexIndex vertex) {

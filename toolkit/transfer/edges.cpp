@@ -32,6 +32,10 @@ Eigen::MatrixXd edge_rows(const BlendshapeModel& target, std::span<const int> tr
   return rows;
 }
 
+namespace {
+
+/// Calls `work` with the edge_rows() of some of the triangles after the other: few enough that
+/// those of every expression stay in cache.
 void for_edge_rows(const BlendshapeModel& target, std::span<const int> triangles, EdgeSum sum,
                    const std::function<void(const Eigen::MatrixXd&)>& work) {
   for (std::size_t first = 0; first < triangles.size(); first += kTrianglesPerBlock) {
@@ -39,6 +43,8 @@ void for_edge_rows(const BlendshapeModel& target, std::span<const int> triangles
     work(edge_rows(target, triangles.subspan(first, size), sum));
   }
 }
+
+}  // namespace
 
 Eigen::MatrixXd gram_matrix(const BlendshapeModel& target, std::span<const int> triangles,
                             EdgeSum sum, const Eigen::VectorXd& weights) {

@@ -65,11 +65,6 @@ inline Eigen::Matrix2d edge_factor(EdgeSum sum) {
 Eigen::MatrixXd edge_rows(const BlendshapeModel& target, std::span<const int> triangles,
                           EdgeSum sum);
 
-/// Calls `work` with the edge_rows() of some of the triangles after the other: few enough that
-/// those of every expression stay in cache.
-void for_edge_rows(const BlendshapeModel& target, std::span<const int> triangles, EdgeSum sum,
-                   const std::function<void(const Eigen::MatrixXd&)>& work);
-
 /// A^T A of eq. 11 (D x D). Where `weights` are given, the square of triangle i counts weights[i]
 /// times (M).
 Eigen::MatrixXd gram_matrix(const BlendshapeModel& target, std::span<const int> triangles,

@@ -17,7 +17,6 @@
 #include "toolkit/io/written_files.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/xml_text.h"
 #include "toolkit/vtk/poly_data.h"
 #include "toolkit/vtk/silent_vtk.h"
 

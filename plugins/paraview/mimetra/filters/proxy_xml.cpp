@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "toolkit/operations/xml_text.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 
