@@ -82,6 +82,31 @@ TEST_F(Splocs, SequenceOfTheReferenceIsRead) {
   EXPECT_EQ(found.frames(), 5);
 }
 
+TEST_F(Splocs, SequenceOfOtherToolsIsReadByTheirNamesAndAxes) {
+  const std::vector<double> tris = {0, 1, 2, 2, 1, 3};
+  const Hdf5Made::Sizes sizes = {5, 4, 3}, turned = {4, 3, 5};
+  {
+    const Hdf5Made made(file_);
+    made.add("vertices", sizes, test::counted_up(sizes), H5T_IEEE_F32LE);
+    made.add("faces", {2, 3}, tris, H5T_STD_U32LE);
+  }
+  const MeshSequence plain = read();
+  ASSERT_EQ(plain.frames(), 5);
+  EXPECT_EQ(plain.connectivity().triangles.rows(), 2);
+  std::vector<double> values = test::counted_up(sizes);
+  const Eigen::Map<const Frames> frames(values.data(), 5, 12);
+  EXPECT_EQ(plain.positions(), frames);
+  const Frames transposed = frames.transpose();
+  {
+    const Hdf5Made made(file_);
+    made.add("verts", turned, {transposed.data(), transposed.data() + 60}, H5T_IEEE_F64LE);
+    made.add("tris", {2, 3}, tris, H5T_STD_I64LE);
+  }
+  EXPECT_EQ(read().positions(), frames);
+  EXPECT_EQ(read_sequence(file_.string(), {.frames = "3:"}).sequence.positions(),
+            frames.bottomRows(2));
+}
+
 TEST_F(Splocs, SequenceIsTheSameBytesEveryTime) {
   write_sequence(sequence_of_quads(), folder_ / "a.h5", {}, {}, Context().with_threads(1));
   { const std::vector<std::string> scribble(1000, std::string(5000, 'x')); }

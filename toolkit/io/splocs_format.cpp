@@ -18,6 +18,8 @@ namespace {
 
 // What the reference implementation of sparse localized deformation components writes and reads.
 constexpr auto kVerts = "verts", kTris = "tris";
+// The same as other tools call them.
+constexpr auto kVertices = "vertices", kFaces = "faces";
 // What goes with them here, and what the reference leaves alone.
 constexpr auto kTimesName = "times", kRestName = "rest";
 // Corners of each polygon and their vertices where not all are triangles, and texture coordinates
@@ -40,27 +42,27 @@ int counted(const Hdf5Dataset& set, std::uint64_t size) {
 }
 
 Hdf5Dataset positions_of(const Hdf5File& file) {
-  if (file.has(kVerts)) return file.dataset(kVerts);
+  for (const char* name : {kVerts, kVertices}) {
+    if (file.has(name)) return file.dataset(name);
+  }
   if (file.has("default") && file.has("comp000")) {
     file.fail(
         "holds components, expected a sequence; `regions` and `transfer` take them by option "
         "'components'");
   }
   if (file.has("VTKHDF")) file.fail("is a VTKHDF file, which is written but not read");
-  file.fail("holds " + (file.names().empty() ? "nothing" : listed(file.names())) +
-            ", expected the dataset 'verts' of frames x vertices x 3");
+  file.fail(
+      "holds " + (file.names().empty() ? "nothing" : listed(file.names())) +
+      ", expected the dataset 'verts' or 'vertices' of frames x vertices x 3 or vertices x 3 x "
+      "frames; copy one take under that name");
 }
 
+/// Frames x vertices x 3.
 class SplocsFile : public PointCache {
  public:
   SplocsFile(const fs::path& path, Hdf5Dataset verts) : PointCache(path), verts_(std::move(verts)) {
-    const auto& shape = verts_.shape();
-    if (shape.size() != 3 || shape[2] != 3 || !verts_.type().is_real) {
-      verts_.fail("is " + dataset_shape(verts_) + (verts_.type().is_real ? "" : " integers") +
-                  ", expected frames x vertices x 3 of float32 or float64");
-    }
-    frames_ = counted(verts_, shape[0]);
-    vertices_ = counted(verts_, shape[1]);
+    frames_ = counted(verts_, verts_.shape()[0]);
+    vertices_ = counted(verts_, verts_.shape()[1]);
   }
 
  private:
@@ -71,6 +73,34 @@ class SplocsFile : public PointCache {
 
   Hdf5Dataset verts_;
 };
+
+/// Vertices x 3 x frames, as MATLAB and Dynamic FAUST have them: a frame is all over the file,
+/// which is read as a whole.
+class TransposedFile : public PointCache {
+ public:
+  TransposedFile(const fs::path& path, const Hdf5Dataset& verts)
+      : PointCache(path), values_(verts.values()) {
+    frames_ = counted(verts, verts.shape()[2]);
+    vertices_ = counted(verts, verts.shape()[0]);
+  }
+
+ private:
+  void read_values(int first, FramesView poses) const override {
+    const Eigen::Map<const Eigen::MatrixXd> frames(values_.data(), frames_, poses.cols());
+    poses = frames.middleRows(first, poses.rows());
+  }
+
+  std::vector<double> values_;
+};
+
+std::unique_ptr<const PointCache> cache_of(const fs::path& path, Hdf5Dataset verts) {
+  const auto& shape = verts.shape();
+  const bool is_real = verts.type().is_real, has_axes = is_real && shape.size() == 3;
+  if (has_axes && shape[2] == 3) return std::make_unique<SplocsFile>(path, std::move(verts));
+  if (has_axes && shape[1] == 3) return std::make_unique<TransposedFile>(path, verts);
+  verts.fail("is " + dataset_shape(verts) + (is_real ? "" : " integers") +
+             ", expected frames x vertices x 3, or vertices x 3 x frames, of float32 or float64");
+}
 
 void check_shape(const Hdf5Dataset& set, const std::vector<std::uint64_t>& expected,
                  const std::string& text) {
@@ -144,8 +174,8 @@ TextureCoordinates texture_of(const Hdf5File& file, std::size_t corners) {
   return texture;
 }
 
-std::shared_ptr<const Connectivity> faces_of(const Hdf5File& file, int vertices) {
-  const Hdf5Dataset tris = file.dataset(kTris);
+std::shared_ptr<const Connectivity> faces_of(const Hdf5File& file, const char* name, int vertices) {
+  const Hdf5Dataset tris = file.dataset(name);
   Connectivity faces = connectivity_of(tris, vertices, triangles_of(tris, vertices));
   if (file.has(kSizes) && file.has(kCorners)) {
     Connectivity cut = connectivity_of(file.dataset(kSizes), vertices, polygons_of(file, vertices));
@@ -181,9 +211,10 @@ Positions rest_in(const Hdf5Dataset& set, int vertices) {
 OpenSequence open_splocs(const fs::path& path, const SequenceSource& source,
                          const Context& context) {
   const Hdf5File file(path);
-  auto cache = std::make_unique<const SplocsFile>(path, positions_of(file));
+  std::unique_ptr<const PointCache> cache = cache_of(path, positions_of(file));
   PointCacheParts parts;
-  if (file.has(kTris) && !source.topology) parts.faces = faces_of(file, cache->vertices());
+  const char* const faces = file.has(kTris) ? kTris : kFaces;
+  if (file.has(faces) && !source.topology) parts.faces = faces_of(file, faces, cache->vertices());
   if (file.has(kTimesName)) {
     parts.times = times_in(file.dataset(kTimesName), cache->frames());
     check_times(path.string(), *parts.times);
