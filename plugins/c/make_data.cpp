@@ -228,7 +228,7 @@ ModelData model_of(GivenArrays& given, const Base& base) {
     made.performance.weights = given.numbers("weights", "F x W");
     made.performance.names = given.strings("weight_names", "W");
     if (given.has("times")) made.performance.times = times_of(given);
-    note_odd_weights(made.performance, made.model.expressions().names);
+    note_odd_times(made.performance);
   }
   if (!given.has("landmarks")) return made;
   const std::vector<int> pairs = given.integers("landmarks", "L x 2");

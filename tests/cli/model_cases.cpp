@@ -114,8 +114,8 @@ std::vector<BadInput> weight_cases() {
   add("windows_lines_and_bom", "\xEF\xBB\xBFtime,left,right,top\r\n0,0,0,0\r\n1,1,0,0\r\n", 0,
       {"\"frames\": 2"});
   add("json_in_a_csv", "[{\"left\": 1}]", 3, {"holds JSON", "call it .json"});
-  add("percent", "time,left,right,top\n0,0,50,0\n1,100,20,80\n", 0,
-      {"\"frames\": 2", "look like percent", "divided by 100"});
+  add("percent", "time,left,right,top\n0,0,50,0\n1,100,20,80\n", 3,
+      {"the weight of 'left' is 100 in frame 1", "--weight-scale"});
   add("frames_in_steps", "frame,left,right,top\n1001,0,0,0\n1003,1,0,0\n", 0,
       {"\"frames\": 2", "rows are 2 frames apart", "--fps gives the rate"});
   add("timecode_that_repeats", "Timecode,left\n01:00:00:01,0\n01:00:00:01,1\n", 3,

@@ -179,7 +179,7 @@ std::vector<Target> model_targets() {
        [](const fs::path& file) {
          const std::vector<std::string> expressions = {"smile", "brow_L", "jawOpen"};
          WeightTrack track = read_weights(file);
-         note_odd_weights(track, expressions);
+         scale_weights("w.json", track, expressions, {});
          weights_for(track, expressions);
        },
        {text(R"([{"time": 0, "smile": 0.5}, {"time": 1, "smile": 0.25}])"),

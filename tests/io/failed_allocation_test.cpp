@@ -103,7 +103,7 @@ MeshSequence short_take() {
 }
 
 const std::vector<std::string> kTakes = {"take/",   "take.npy", "take.npz",  "take.pc2",
-                                         "take.h5", "take.glb", "take.usda", "take.mdd"};
+                                         "take.h5", "take.glb", "take.mdd"};
 
 TEST(FailedAllocation, WhileWritingLeavesNothingUnderTheName) {
   const MeshSequence take = short_take();

@@ -22,48 +22,32 @@ class OddWeights : public testing::Test {
     return read_weights(path);
   }
 
-  WeightTrack driving(const std::vector<std::string>& expressions,
-                      const std::string& content) const {
-    WeightTrack track = read(content);
-    note_odd_weights(track, expressions);
-    return track;
-  }
-
   test::TemporaryFolder folder_;
 };
 
-TEST_F(OddWeights, ArePercentOnlyWhereMostColumnsAre) {
-  const WeightTrack usual = driving({"jawOpen", "smile", "blink", "cheekPuff"},
-                                    "jawOpen,smile,blink,cheekPuff\n0,0.5,0,0\n0.8,0.25,20,15\n"
-                                    "0.4,0,30,40\n");
-  EXPECT_EQ(usual.weights(1, 0), 0.8);
-  EXPECT_EQ(usual.weights(1, 2), 20);
-  EXPECT_THAT(usual.notes, ElementsAre(HasSubstr("the weight of 'cheekPuff' is 40")));
-}
-
-TEST_F(OddWeights, AreThoseOfColumnsThatDriveAnExpression) {
-  // A head's pose in degrees and millimetres outnumbers the weights.
-  const std::string pose = "jawOpen,smile,pitch,yaw,roll,tx,ty,tz\n";
-  const std::vector<std::string> expressions = {"jawOpen", "smile", "frown"};
-  const WeightTrack usual =
-      driving(expressions, pose + "0,0.5,12,7,3,40,55,60\n1,0.25,14,9,4,41,52,61\n");
-  EXPECT_EQ(usual.weights.leftCols(2), (Eigen::Matrix2d() << 0, 0.5, 1, 0.25).finished());
-  EXPECT_THAT(usual.notes, testing::IsEmpty());
-  const WeightTrack percent =
-      driving(expressions, pose + "0,55,-120,0,0,0,0,0\n80,12,-130,0,0,0,0,0\n");
-  EXPECT_EQ(percent.weights,
-            (Eigen::MatrixXd(2, 8) << 0, 0.55, -120, 0, 0, 0, 0, 0, 0.8, 0.12, -130, 0, 0, 0, 0, 0)
-                .finished());
-  EXPECT_THAT(percent.notes, ElementsAre(HasSubstr("go up to 80 and look like percent")));
-  const WeightTrack foreign = driving({"blink"}, pose + "0,55,1,0,0,0,0,0\n80,12,1,0,0,0,0,0\n");
-  EXPECT_EQ(foreign.weights(1, 0), 80);
-  EXPECT_THAT(foreign.notes, testing::IsEmpty());
-}
-
-TEST_F(OddWeights, ThatDriveTwoHalvesAreDividedOnce) {
-  const WeightTrack percent =
-      driving({"browInnerUp_L", "browInnerUp_R", "jawOpen"}, "browInnerUp,jawOpen\n55,80\n");
-  EXPECT_EQ(percent.weights, Eigen::RowVector2d(0.55, 0.8));
+TEST_F(OddWeights, AreScaledOnRequestAndRefusedFarBeyondOne) {
+  const std::vector<std::string> expressions = {"browInnerUp_L", "browInnerUp_R", "jawOpen"};
+  // A head's pose in degrees drives nothing.
+  const std::string percent = "browInnerUp,jawOpen,pitch\n55,80,-120\n0,12,-130\n";
+  WeightTrack track = read(percent);
+  scale_weights("w.csv", track, expressions, 0.01);
+  EXPECT_TRUE(track.weights.leftCols(2).isApprox(
+      (Eigen::Matrix2d() << 0.55, 0.8, 0, 0.12).finished(), 1e-15));
+  track = read(percent);
+  EXPECT_EQ(test::message_of<IoError>([&] { scale_weights("w.csv", track, expressions, {}); }),
+            "w.csv: the weight of 'browInnerUp' is 55 in frame 0, expected 0 to 1; option "
+            "'weight-scale' multiplies weights: 0.01 where they are in percent, 1 to take them as "
+            "they are");
+  scale_weights("w.csv", track, expressions, 1);
+  EXPECT_EQ(track.weights(0, 1), 80);
+  WeightTrack usual = read("browInnerUp,jawOpen,pitch\n-0.5,2,-120\n");
+  scale_weights("w.csv", usual, expressions, {});
+  EXPECT_EQ(usual.weights, Eigen::RowVector3d(-0.5, 2, -120));
+  WeightTrack below = read("jawOpen\n-2.5\n");
+  EXPECT_THAT(test::message_of<IoError>([&] { scale_weights("w", below, expressions, {}); }),
+              HasSubstr("'jawOpen' is -2.5"));
+  below.is_fit = true;
+  scale_weights("w", below, expressions, {});
 }
 
 TEST_F(OddWeights, ThatAreMissingLieBetweenTheirNeighboursInTime) {

@@ -50,7 +50,6 @@ TEST(SinglePrecision, RefusesWhatItCannotHoldAndNamesFrameAndVertex) {
   EXPECT_THAT(refusal("take.pc2"), names_it);
   EXPECT_THAT(refusal("take.mdd"), names_it);
   EXPECT_THAT(refusal("take.glb"), names_it);
-  EXPECT_THAT(refusal("take.usda"), names_it);
   EXPECT_THAT(refusal("take.npy", {.single_precision = true}), names_it);
   EXPECT_THAT(refusal("take.npz", {.single_precision = true}), names_it);
   EXPECT_THAT(refusal("take", {.format = MeshFormat::stl}),

@@ -177,10 +177,10 @@ class Operations(SampleTest):
             self.assertLess(np.abs(again.out[name] - result.out[name]).max(), 0.1)
         percent = {name: column if name == "time" else 100 * column
                    for name, column in columns.items()}
-        with self.assertLogs("mimetra", "WARNING") as said:
-            divided = mimetra.retarget(source=self.actor, target=self.head,
-                                       weights=mimetra.Table(percent))
-        self.assertIn("look like percent", said.output[0])
+        with self.assertRaisesRegex(mimetra.Error, "weight_scale"):
+            mimetra.retarget(source=self.actor, target=self.head, weights=mimetra.Table(percent))
+        divided = mimetra.retarget(source=self.actor, target=self.head,
+                                   weights=mimetra.Table(percent), weight_scale=0.01)
         np.testing.assert_allclose(divided.out[names[1]], result.out[names[1]], atol=1e-12)
 
     def test_fits_as_the_command_does(self):

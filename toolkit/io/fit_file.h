@@ -35,7 +35,7 @@ struct FittedCoefficients {
   /// The one alpha of all frames; the mean over the frames that were seen where they differ.
   Eigen::VectorXd identity() const;
   /// The expressions over time.
-  WeightTrack performance() const { return {expressions, beta, times, {}}; }
+  WeightTrack performance() const { return {expressions, beta, times, {}, 1, true}; }
 };
 
 /// The text of a fit.json: {"identities": [names], "expressions": [names], "frames": [{"time",

@@ -433,7 +433,7 @@ std::vector<fs::path> model_files(const fs::path& path) {
 
 MorphableModel read_model(const fs::path& path, const Context& context) {
   if (!is_there(path)) throw IoError(path.string(), "does not exist");
-  if (is_scene_file(path)) return MorphableModel(*read_scene(path, context).model);
+  if (is_scene_file(path)) return MorphableModel(*read_gltf(path, context).model);
   const Parts parts = parts_of(path);
   if (parts.shape) {
     if (!parts.expressions) {

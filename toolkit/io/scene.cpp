@@ -528,15 +528,10 @@ bool is_scene_file(const fs::path& path) {
   const std::string extension = lower_extension(path);
   std::error_code unreadable;
   if (fs::is_directory(path, unreadable)) return false;
-  for (const char* known : {".glb", ".gltf", ".vrm", ".usda", ".usd", ".usdc", ".usdz"}) {
+  for (const char* known : {".glb", ".gltf", ".vrm"}) {
     if (extension == known) return true;
   }
   return false;
-}
-
-Scene read_scene(const fs::path& path, const Context& context) {
-  return lower_extension(path).starts_with(".usd") ? read_usd(path, context)
-                                                   : read_gltf(path, context);
 }
 
 }  // namespace mimetra

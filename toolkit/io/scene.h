@@ -11,7 +11,7 @@
 #include "toolkit/mesh/context.h"
 #include "toolkit/model/blendshape_model.h"
 
-/// Files of a whole scene, such as glTF and USD: meshes with morph targets and their weights over
+/// Files of a whole scene, glTF: meshes with morph targets and their weights over
 /// time. Internal to their formats.
 namespace mimetra {
 
@@ -60,11 +60,8 @@ struct Scene {
   /// Weights of its expressions (F x D) and their seconds (F); no frames where nothing is driven.
   Eigen::MatrixXd weights = {};
   Eigen::VectorXd times = {};
-  /// Frames that no weights drive, instead of those.
-  std::shared_ptr<const FrameSource> frames = {};
   /// False where the model's neutral only stands in for a rest pose that nobody knows.
   bool rest_is_known = true;
-  bool z_is_up = false;
   std::vector<std::filesystem::path> files = {};
   std::vector<std::string> notes = {};
   /// What was left out of its movement: of no interest for its shapes.
@@ -89,10 +86,6 @@ Scene joined_scene(const std::string& path, std::vector<ScenePart> parts, std::s
 bool is_scene_file(const std::filesystem::path& path);
 
 /// Reads a scene. Throws IoError, Cancelled.
-Scene read_scene(const std::filesystem::path& path, const Context& context = {});
-
-/// Readers of formats, each in the file of its name.
 Scene read_gltf(const std::filesystem::path& path, const Context& context = {});
-Scene read_usd(const std::filesystem::path& path, const Context& context = {});
 
 }  // namespace mimetra

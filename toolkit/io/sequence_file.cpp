@@ -96,6 +96,11 @@ OpenSequence opened(const std::string& text, const SequenceSource& source, const
 OpenSequence open_sequence(const std::string& text, const SequenceSource& source,
                            const Context& context) {
   check_options(source);
+  if (source.weight_scale && !source.weights) {
+    throw std::invalid_argument(text +
+                                ": option 'weight-scale' is a factor of the weights that "
+                                "option 'weights' names; leave it out, or give both");
+  }
   OpenSequence open = opened(text, source, context);
   if (const auto* animation = dynamic_cast<const Animation*>(open.frames.get())) {
     const BlendshapeModel& model = animation->model();

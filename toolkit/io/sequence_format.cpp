@@ -42,7 +42,7 @@ std::string note_on_steps(const Eigen::VectorXd& times) {
 
 // Each in the file of its format.
 SequenceFormat gltf_format(), mdd_format(), npy_format(), npz_format(), pc2_format(),
-    splocs_format(), usd_format();
+    splocs_format();
 SequenceFormat mesh_format(MeshFormat format);
 
 const std::vector<SequenceFormat>& sequence_formats() {
@@ -52,7 +52,6 @@ const std::vector<SequenceFormat>& sequence_formats() {
                                                       mdd_format(),
                                                       splocs_format(),
                                                       gltf_format(),
-                                                      usd_format(),
                                                       mesh_format(MeshFormat::ply),
                                                       mesh_format(MeshFormat::obj),
                                                       mesh_format(MeshFormat::off),

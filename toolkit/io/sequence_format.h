@@ -28,13 +28,17 @@ struct SequenceSource {
   std::optional<std::string> frames = {};
   /// Frames per second where the files say nothing of time.
   std::optional<double> fps = {};
+  /// Factor of the weights; without one, those far beyond 0 to 1 are refused.
+  std::optional<double> weight_scale = {};
 
   static constexpr Option kWeights{"weights", &SequenceSource::weights};
   static constexpr Option kTopology{"topology", &SequenceSource::topology};
   static constexpr Option kFrames{"frames", &SequenceSource::frames};
   static constexpr Option kFps{
       "fps", &SequenceSource::fps, {.minimum = 1e-3, .maximum = 1e6}, "frames per second"};
-  static constexpr auto declared() { return std::tuple(kFps); }
+  static constexpr Option kWeightScale{
+      "weight_scale", &SequenceSource::weight_scale, {.minimum = 1e-6, .maximum = 1e6}, "a factor"};
+  static constexpr auto declared() { return std::tuple(kFps, kWeightScale); }
 };
 
 /// Throws std::invalid_argument where `source` has a frame rate for `name`, whose frames have times

@@ -178,7 +178,7 @@ OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path&
                    const SequenceSource& source) {
   if (source.weights) {
     WeightTrack track = read_weights(*source.weights);
-    note_odd_weights(track, model->expressions().names);
+    scale_weights(source.weights->string(), track, model->expressions().names, source.weight_scale);
     return drive(std::move(model), path, source, *source.weights, std::move(track));
   }
   return {resting(std::move(model), source), true, {path}, {}};
@@ -227,16 +227,10 @@ OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path&
 
 OpenSequence open_scene(const fs::path& path, const SequenceSource& source,
                         const Context& context) {
-  Scene scene = read_scene(path, context);
+  Scene scene = read_gltf(path, context);
   const auto frames = static_cast<int>(scene.weights.rows());
   OpenSequence open;
-  if (scene.frames && !source.weights) {
-    check_rate(path.string(), scene.frames->known_times(), source);
-    open.frames = scene.frames;
-    if (source.frames) {
-      open.frames = selected(scene.frames, selected_frames(source.frames, scene.frames->frames()));
-    }
-  } else if (source.weights || frames == 0) {
+  if (source.weights || frames == 0) {
     open = drive(scene.model, path, source);
   } else {
     const std::vector<int> chosen = selected_frames(source.frames, frames);
@@ -252,7 +246,6 @@ OpenSequence open_scene(const fs::path& path, const SequenceSource& source,
     open.frames = with_rest(open.frames, std::nullopt);
     open.model_driven = false;
   }
-  if (scene.z_is_up) open.frames = z_up(open.frames);
   open.files = scene.files;
   if (source.weights) open.files.push_back(*source.weights);
   std::vector<std::string>& notes = scene.notes;

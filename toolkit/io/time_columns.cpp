@@ -97,29 +97,6 @@ std::optional<int> counted_frames(const std::vector<Timecode>& codes) {
   return nearest ? nearest : std::max(least, static_cast<int>(std::lround(found)));
 }
 
-/// Frames since midnight, where the first ones of each minute but every tenth have no number.
-double dropped_count(const Timecode& code, int rate) {
-  const int minutes = code.seconds / 60, tens = minutes / 10, numbers_left_out = rate / 15;
-  return static_cast<double>(code.seconds) * rate + code.frames -
-         numbers_left_out * (minutes - tens);
-}
-
-/// Whether frames go on past a whole minute from the last number to that which drop-frame timecodes
-/// have first, and never to an earlier one. Every tenth minute has all numbers.
-bool skip_numbers(const std::vector<Timecode>& codes, int rate) {
-  if (rate % 30 != 0) return false;
-  const int left_out = rate / 15;
-  bool skip = false;
-  for (std::size_t i = 1; i < codes.size(); ++i) {
-    const Timecode &code = codes[i - 1], &next = codes[i];
-    if (next.seconds % 60 != 0 || next.seconds % 600 == 0) continue;
-    if (next.frames < left_out) return false;
-    const bool is_next = seconds_between(code, next) == 1 && code.frames >= rate - 1;
-    skip = skip || (is_next && next.frames < left_out + 1);
-  }
-  return skip;
-}
-
 }  // namespace
 
 std::optional<Timecode> Timecode::parse(std::string_view text) {
@@ -131,9 +108,7 @@ std::optional<Timecode> Timecode::parse(std::string_view text) {
     const auto used = static_cast<std::size_t>(end - text.data());
     const bool sound = error == std::errc() && parts[part] >= 0 && parts[part] < kMost[part];
     if (!sound || used >= text.size()) return {};
-    const bool before_frames = part + 1 == parts.size();
-    if (text[used] != ':' && !(before_frames && text[used] == ';')) return {};
-    code.drops_frames = text[used] == ';';
+    if (text[used] != ':') return {};
     text.remove_prefix(used + 1);
   }
   code.seconds = (parts[0] * 60 + parts[1]) * 60 + parts[2];
@@ -149,21 +124,12 @@ TimecodeTimes times_of(const std::vector<Timecode>& codes) {
   TimecodeTimes result;
   const auto rate = counted_frames(codes);
   if (!rate) return result;
-  const bool drops = codes.front().drops_frames;
-  // Those whose numbers are left out now and then are as much slower.
-  result.rate = drops ? *rate / 1.001 : *rate;
-  result.skips_numbers = !drops && skip_numbers(codes, *rate);
+  result.rate = *rate;
   double days = 0;
   for (std::size_t i = 0; i < codes.size(); ++i) {
     if (i > 0 && codes[i].seconds < codes[i - 1].seconds) days += kSecondsOfDay;
-    if (drops) {
-      const double of_day = dropped_count({kSecondsOfDay, 0}, *rate);
-      const double count = dropped_count(codes[i], *rate) + days / kSecondsOfDay * of_day;
-      result.times.push_back((count - dropped_count(codes.front(), *rate)) / *result.rate);
-    } else {
-      const double seconds = codes[i].seconds + days - codes.front().seconds;
-      result.times.push_back(seconds + (codes[i].frames - codes.front().frames) / *rate);
-    }
+    const double seconds = codes[i].seconds + days - codes.front().seconds;
+    result.times.push_back(seconds + (codes[i].frames - codes.front().frames) / *rate);
   }
   return result;
 }

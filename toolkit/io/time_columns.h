@@ -42,13 +42,11 @@ inline constexpr std::array kUsualRates = {24, 25, 30, 48, 50, 60, 90, 100, 120,
 inline constexpr int kSecondsOfDay = 24 * 60 * 60;
 
 /// `HH:MM:SS:FF` or `HH:MM:SS:FF.sss`: a second of the day, and how many frames of it have passed.
-/// A `;` before the frames says that numbers of frames are left out (29.97 and 59.94 per second).
 struct Timecode {
   int seconds;
   double frames;
-  bool drops_frames = false;
 
-  /// None for what is no timecode.
+  /// None for what is no timecode, and for one that leaves out numbers of frames (`;FF`).
   static std::optional<Timecode> parse(std::string_view text);
 };
 
@@ -58,8 +56,6 @@ struct Timecode {
 struct TimecodeTimes {
   std::optional<double> rate;
   std::vector<double> times;
-  /// Numbers that drop-frame timecodes leave out are not there either, though all are counted.
-  bool skips_numbers = false;
 };
 
 /// Timecodes may pass midnight once. \pre each is later than the one before: passes()

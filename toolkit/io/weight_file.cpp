@@ -424,7 +424,10 @@ class WeightReader {
   void read_timecode(std::string_view text) {
     const auto code = Timecode::parse(text);
     if (!code) {
-      csv_.fail("expected a timecode HH:MM:SS:FF, found '" + std::string(text) + "'");
+      csv_.fail("expected a timecode HH:MM:SS:FF, found '" + std::string(text) + "'" +
+                (text.find(';') == std::string_view::npos
+                     ? ""
+                     : ", a drop-frame timecode; give seconds in a column 'time' instead"));
     }
     if (!timecodes_.empty() && !passes(timecodes_.back(), *code)) {
       csv_.fail("the timecode " + std::string(text) +
@@ -439,11 +442,6 @@ class WeightReader {
     const TimecodeTimes found = times_of(timecodes_);
     if (found.rate) {
       times_ = found.times;
-      if (found.skips_numbers) {
-        result.notes.push_back(
-            "its timecodes leave out the first numbers of minutes, as drop-frame timecodes do, and "
-            "are read with a pause there; where no frame was lost, write ';' before their frames");
-      }
     } else {
       result.notes.push_back(
           "no second ends among its timecodes, which would tell their rate; give it by option "
@@ -524,6 +522,11 @@ WeightTrack read_weights(const std::filesystem::path& path) {
                   "names, or .json");
   }
   const bool is_json = extension == ".json";
+  const std::string kind(kind_of_file(path));
+  if (!kind.empty() && !is_json && extension != ".csv") {
+    throw IoError(path.string(),
+                  "is " + kind + "; weights are read from .csv with a line of names, or .json");
+  }
   WeightTrack track = is_json ? read_weights_json(path) : WeightReader(path).read();
   fill_missing_weights(track);
   note_odd_times(track);

@@ -142,68 +142,30 @@ void fill_missing_weights(WeightTrack& track) {
   }
 }
 
-namespace {
-
-/// Blendshape weights are 0 to 1, and sometimes a little beyond.
-constexpr double kMostUsual = 2, kLeastUsual = -0.1;
-
-/// Weights that go beyond this and look like percent are nothing else.
-constexpr double kLeastPercent = 10;
-
-/// Whether many weights, in most columns that move, are beyond what weights from 0 to 1 are.
-bool look_like_percent(const Eigen::MatrixXd& weights) {
-  constexpr double kBeyond = 1.5, kMany = 0.05;
-  const auto beyond = static_cast<double>((weights.array() > kBeyond).count());
-  const Eigen::ArrayXd most = weights.colwise().maxCoeff().transpose();
-  const double many = kMany * static_cast<double>(weights.size());
-  const auto below = static_cast<double>((weights.array() < 10 * kLeastUsual).count());
-  return beyond > many && below <= many && 2 * (most > kBeyond).count() > (most > 0).count() &&
-         most.maxCoeff() <= 100 && weights.minCoeff() >= 100 * kLeastUsual;
-}
-
-/// Divides weights in percent by 100; notes that, and weights that nobody means. Only of `columns`.
-void note_sizes(WeightTrack& track, const std::vector<int>& columns) {
-  const Eigen::MatrixXd weights = track.weights(Eigen::all, columns);
-  const auto note = [&](Eigen::Index frame, Eigen::Index column) {
-    return "the weight of '" +
-           track.names[static_cast<std::size_t>(columns[static_cast<std::size_t>(column)])] +
-           "' is " + readable(weights(frame, column)) + " in frame " + std::to_string(frame) +
-           ", expected 0 to 1";
-  };
-  Eigen::Index frame = 0, column = 0;
-  const double most = weights.cwiseAbs().maxCoeff(&frame, &column);
-  if (most <= kMostUsual) {
-    if (weights.minCoeff(&frame, &column) >= kLeastUsual) return;
-    track.notes.push_back(note(frame, column) + "; those below 0 are taken as they are");
-    return;
-  }
-  if (look_like_percent(weights)) {
-    const bool is_percent = most > kLeastPercent;
-    if (is_percent) track.weights(Eigen::all, columns) = weights / 100;
-    track.notes.push_back("weights go up to " + readable(most) +
-                          " and look like percent, expected 0 to 1; " +
-                          (is_percent ? "they are divided by 100"
-                                      : "they are taken as they are: divide them by 100"));
-    return;
-  }
-  track.notes.push_back(note(frame, column));
-}
-
-}  // namespace
-
 void note_odd_times(WeightTrack& track) {
   const std::string odd = note_on_steps(track.times);
   if (odd.empty() || std::ranges::find(track.notes, odd) != track.notes.end()) return;
   track.notes.push_back(odd);
 }
 
-void note_odd_weights(WeightTrack& track, const std::vector<std::string>& expressions) {
-  std::vector<int> driving = match_weights(track, expressions).column;
-  std::erase(driving, -1);
-  std::ranges::sort(driving);
-  driving.erase(std::unique(driving.begin(), driving.end()), driving.end());
-  if (!driving.empty() && track.weights.rows() > 0) note_sizes(track, driving);
-  note_odd_times(track);
+void scale_weights(const std::string& name, WeightTrack& track,
+                   const std::vector<std::string>& expressions, std::optional<double> scale) {
+  if (scale) {
+    track.weights *= *scale;
+    return;
+  }
+  if (track.is_fit) return;
+  constexpr double kLargest = 2;  // they are 0 to 1, and sometimes a little beyond
+  for (const int column : match_weights(track, expressions).column) {
+    if (column < 0 || track.weights.rows() == 0) continue;
+    Eigen::Index frame = 0;
+    if (!(track.weights.col(column).cwiseAbs().maxCoeff(&frame) > kLargest)) continue;
+    throw IoError(name, "the weight of '" + track.names[static_cast<std::size_t>(column)] +
+                            "' is " + readable(track.weights(frame, column)) + " in frame " +
+                            std::to_string(frame) +
+                            ", expected 0 to 1; option 'weight-scale' multiplies weights: 0.01 "
+                            "where they are in percent, 1 to take them as they are");
+  }
 }
 
 }  // namespace mimetra

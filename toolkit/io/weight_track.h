@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,11 +16,13 @@ struct WeightTrack {
   std::vector<std::string> names;  ///< one per column
   Eigen::MatrixXd weights;         ///< F x names
   Eigen::VectorXd times;           ///< seconds (F); empty where the file has none
-  /// What was noticed while reading: times that cannot be told, weights that look like percent.
+  /// What was noticed while reading, such as times that cannot be told.
   std::vector<std::string> notes = {};
   /// Where it has no times: frames of the animation from one row to the next, 2 for rows of the
   /// frames 1001, 1003, ...
   double step = 1;
+  /// Of a fit, whose coefficients may have any size.
+  bool is_fit = false;
 };
 
 /// Which column of a track drives which expression.
@@ -48,10 +51,11 @@ inline constexpr double kMissingWeight = std::numeric_limits<double>::quiet_NaN(
 /// are stay beyond them. Adds notes on the rows and columns. \pre each column has a number
 void fill_missing_weights(WeightTrack& track);
 
-/// Divides weights in percent by 100, and adds what was noticed to the track's notes: that, weights
-/// that nobody means, and times that nobody captures at. Columns that drive none of `expressions`,
-/// such as a head's pose in degrees, have no say and stay.
-void note_odd_weights(WeightTrack& track, const std::vector<std::string>& expressions);
+/// Multiplies the weights by `scale`. Without one, throws IoError that begins with `name` where a
+/// weight is farther than 2 from 0, as those in percent are, unless they are a fit's. Columns that
+/// drive none of `expressions`, such as a head's pose in degrees, may have any size.
+void scale_weights(const std::string& name, WeightTrack& track,
+                   const std::vector<std::string>& expressions, std::optional<double> scale);
 
 /// Adds to the notes, once, what is odd about times that nobody captures at.
 void note_odd_times(WeightTrack& track);

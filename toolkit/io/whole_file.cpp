@@ -103,15 +103,24 @@ constexpr std::array kKinds = {
     Kind{" .mtl ", "a file of materials", "; name the .obj file that it belongs to"},
 };
 
+const Kind* kind_of(const std::string& extension) {
+  const auto found = std::ranges::find_if(kKinds, [&extension](const Kind& kind) {
+    return kind.extensions.find(' ' + extension + ' ') != std::string_view::npos;
+  });
+  return found == kKinds.end() ? nullptr : &*found;
+}
+
 }  // namespace
+
+std::string_view kind_of_file(const fs::path& path) {
+  const Kind* kind = kind_of(lower_extension(path));
+  return kind ? kind->name : "";
+}
 
 std::string foreign_file(const fs::path& path) {
   const std::string extension = lower_extension(path);
   if (extension.empty()) return {};
-  const auto found = std::ranges::find_if(kKinds, [&extension](const Kind& kind) {
-    return kind.extensions.find(' ' + extension + ' ') != std::string_view::npos;
-  });
-  if (found != kKinds.end()) return std::string(found->name).append(found->remedy);
+  if (const Kind* kind = kind_of(extension)) return std::string(kind->name).append(kind->remedy);
   std::error_code unreadable;
   if (!fs::is_regular_file(path, unreadable)) return {};
   // Another program's name for it.

@@ -23,9 +23,12 @@ std::filesystem::path without_trailing_slash(std::filesystem::path path);
 /// nearly the same.
 [[noreturn]] void fail_missing(const std::string& path);
 
-/// What a file of a known kind that nothing here reads is, and what to do with it, by its
-/// extension: "an FBX scene; export it as ...". Also of glTF with an extension that nobody knows.
-/// "" for other files.
+/// What a file of a known kind that nothing here reads is by its extension: "an FBX scene". "" for
+/// other files.
+std::string_view kind_of_file(const std::filesystem::path& path);
+
+/// That, and what to do with it: "an FBX scene; export it as ...". Also of glTF with an extension
+/// that nobody knows.
 std::string foreign_file(const std::filesystem::path& path);
 
 }  // namespace mimetra

@@ -219,12 +219,6 @@ std::shared_ptr<const FrameSource> with_rest(std::shared_ptr<const FrameSource> 
   return std::make_shared<const FramesUnderHeader>(std::move(source), std::move(header));
 }
 
-std::shared_ptr<const FrameSource> with_z_up(std::shared_ptr<const FrameSource> source) {
-  SequenceHeader header = source->header();
-  header.z_is_up = true;
-  return std::make_shared<const FramesUnderHeader>(std::move(source), std::move(header));
-}
-
 std::shared_ptr<const FrameSource> some_vertices(std::shared_ptr<const FrameSource> source,
                                                  VertexIndex first, int count) {
   return std::make_shared<const VertexFrames>(std::move(source), first, count);

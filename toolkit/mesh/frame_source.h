@@ -35,8 +35,6 @@ struct SequenceHeader {
   bool rest_is_known = false;
   /// False where nobody gave them, so that they follow from kDefaultFramesPerSecond.
   bool times_are_known = false;
-  /// True where it is known that z is up; formats that say what is up say y otherwise.
-  bool z_is_up = false;
 };
 
 /// One mesh that moves, whose poses are read when they are needed: one connectivity, F poses, their
@@ -146,9 +144,6 @@ std::shared_ptr<const FrameSource> selected(std::shared_ptr<const FrameSource> s
 /// frame stands in. Throws std::invalid_argument for another number of vertices.
 std::shared_ptr<const FrameSource> with_rest(std::shared_ptr<const FrameSource> source,
                                              std::optional<Positions> rest);
-
-/// The same frames, of which it is known that z is up in them.
-std::shared_ptr<const FrameSource> with_z_up(std::shared_ptr<const FrameSource> source);
 
 /// The vertices `first` .. first + count - 1 of a source, without faces. Throws std::out_of_range
 /// for vertices that are not there.

@@ -37,7 +37,6 @@ void change_units(CoordinatesView positions, const UnitChange& change) {
 
 SequenceHeader in_units(SequenceHeader header, const UnitChange& change) {
   change_units(header.rest, change);
-  if (change.up != UpTurn::keep) header.z_is_up = change.up == UpTurn::y_to_z;
   return header;
 }
 

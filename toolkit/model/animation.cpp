@@ -69,12 +69,6 @@ Animation Animation::in_units(const UnitChange& change) const {
   return changed;
 }
 
-Animation Animation::z_up() const {
-  Animation known = *this;
-  known.header_.z_is_up = true;
-  return known;
-}
-
 Animation Animation::renumbered(std::shared_ptr<const Connectivity> connectivity,
                                 const std::vector<VertexIndex>& vertices) const {
   const ShapeBasis& given = model_->expressions();
@@ -87,11 +81,9 @@ Animation Animation::renumbered(std::shared_ptr<const Connectivity> connectivity
         from(vertices, Eigen::all);
   }
   const Positions neutral = model_->neutral()(vertices, Eigen::all);
-  Animation renumbered(
+  return Animation(
       std::make_shared<const BlendshapeModel>(std::move(connectivity), neutral, std::move(shapes)),
       weights_, times(), times_are_known());
-  renumbered.header_.z_is_up = header_.z_is_up;
-  return renumbered;
 }
 
 void Animation::read_frames(int first, FramesView poses) const {
@@ -114,12 +106,6 @@ std::shared_ptr<const FrameSource> in_units(std::shared_ptr<const FrameSource> s
     return with_units(std::move(source), change);
   }
   return std::make_shared<const Animation>(animation->in_units(change));
-}
-
-std::shared_ptr<const FrameSource> z_up(std::shared_ptr<const FrameSource> source) {
-  const auto* animation = dynamic_cast<const Animation*>(source.get());
-  if (!animation) return with_z_up(std::move(source));
-  return std::make_shared<const Animation>(animation->z_up());
 }
 
 RegionalAnimation::RegionalAnimation(std::shared_ptr<const BlendshapeModel> model,

@@ -24,8 +24,6 @@ class Animation : public FrameSource {
   /// The same with its model in other units and axes. Throws std::invalid_argument for options out
   /// of range.
   Animation in_units(const UnitChange& change) const;
-  /// The same, of which it is known that z is up in it.
-  Animation z_up() const;
   /// The same on another mesh, vertex v of which is vertices[v] of this one. Throws
   /// std::invalid_argument unless there is one of them for each vertex of the connectivity.
   Animation renumbered(std::shared_ptr<const Connectivity> connectivity,
@@ -42,9 +40,6 @@ class Animation : public FrameSource {
 /// with_units() of any sequence, by which an Animation stays one.
 std::shared_ptr<const FrameSource> in_units(std::shared_ptr<const FrameSource> source,
                                             const UnitChange& change);
-
-/// with_z_up() of any sequence, by which an Animation stays one.
-std::shared_ptr<const FrameSource> z_up(std::shared_ptr<const FrameSource> source);
 
 /// How much each of some regions counts at each vertex (N x R): shares that are not negative, and
 /// in each row add up to 1.

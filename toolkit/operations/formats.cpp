@@ -140,7 +140,7 @@ ReadValue read_model_files(const std::string& text, const ReadRequest& request,
                            const Context& context) {
   const ModelSpec spec = ModelSpec::parse(text);
   if (is_scene_file(spec.path) && !spec.fit && spec.identity_text.empty()) {
-    Scene scene = read_scene(spec.path, context);
+    Scene scene = read_gltf(spec.path, context);
     std::ranges::move(scene.model_notes, std::back_inserter(scene.notes));
     return {{spec.name(), ModelData{MorphableModel(*scene.model)}, {.path = spec.path}},
             std::move(scene.files),
@@ -223,8 +223,6 @@ BoundParameters<SequenceWriteOptions> writing_parameters(SequenceFormat::Precisi
   return BoundParameters<SequenceWriteOptions>();
 }
 
-/// Listed because the reader says of the others how they become text.
-constexpr auto kUsdOfAnyKind = "USD, of which only text is read";
 constexpr auto kAvatar = "VRM avatar, read as glTF";
 
 void add_sequence_formats(OperationTable& table) {
@@ -260,11 +258,6 @@ void add_sequence_formats(OperationTable& table) {
                    .extensions = {".vrm"},
                    .reading = sequence_parameters().declared(),
                    .read = read_sequence_data});
-  table.add(Format{.name = kUsdOfAnyKind,
-                   .kind = DataKind::sequence,
-                   .extensions = {".usd", ".usdc", ".usdz"},
-                   .reading = sequence_parameters().declared(),
-                   .read = read_sequence_data});
   table.add(Format{.name = "eos model, by weights",
                    .kind = DataKind::sequence,
                    .extensions = {".bin"},
@@ -287,16 +280,8 @@ void add_model_formats(OperationTable& table) {
                    .extensions = {".glb", ".gltf"},
                    .read = read_model_data,
                    .write = write_gltf_data});
-  table.add(Format{.name = "USD text",
-                   .kind = DataKind::model,
-                   .extensions = {".usda"},
-                   .read = read_model_data});
   table.add(Format{
       .name = kAvatar, .kind = DataKind::model, .extensions = {".vrm"}, .read = read_model_data});
-  table.add(Format{.name = kUsdOfAnyKind,
-                   .kind = DataKind::model,
-                   .extensions = {".usd", ".usdc", ".usdz"},
-                   .read = read_model_data});
   table.add(Format{.name = "mesh without expressions",
                    .kind = DataKind::model,
                    .extensions = mesh_extensions(),

@@ -55,10 +55,10 @@ void warn_of_lost_expressions(const Invocation& invocation, const FrameSource& f
   const bool is_one_mesh = is_mesh_extension(path.extension().string());
   const bool holds_them = kept == KeptInScenes::yes && is_scene_file(path);
   if (is_one_mesh || holds_them || is_weight_file(path.string())) return;
-  invocation.warn(
-      path.string() + ": holds the neutral alone, not the " +
-      counted(animation->model().expressions().size(), "expression") + " of the model; " +
-      (kept == KeptInScenes::yes ? ".glb and .usda hold them, and " : "") + "--weights moves them");
+  invocation.warn(path.string() + ": holds the neutral alone, not the " +
+                  counted(animation->model().expressions().size(), "expression") +
+                  " of the model; " + (kept == KeptInScenes::yes ? "a .glb holds them, and " : "") +
+                  "--weights moves them");
 }
 
 Json json_of(const HeadMotionTaken& motion) {

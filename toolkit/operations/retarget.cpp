@@ -60,14 +60,21 @@ std::vector<Exclusion> retarget_exclusions() {
        pairing_exclusions()});
 }
 
+/// --frames, --fps and --weight-scale.
+BoundParameters<SequenceSource> driving_parameters() {
+  BoundParameters<SequenceSource> list = frame_parameters();
+  return list.add(weight_scale_parameter());
+}
+
 /// The weights and their times of those frames that are asked for, which drive `expressions`.
 WeightTrack chosen_track(const Invocation& invocation,
                          const std::vector<std::string>& expressions) {
-  const SequenceSource source = frame_parameters().read(invocation.parameters);
+  const SequenceSource source = driving_parameters().read(invocation.parameters);
   const NamedData& weights = invocation.input("weights");
   WeightTrack track = track_of(std::get<Table>(weights.data));
-  note_odd_weights(track, expressions);
   const std::string name = weights.name.empty() ? "weights" : weights.name;
+  scale_weights(name, track, expressions, source.weight_scale);
+  note_odd_times(track);
   for (const std::string& note : track.notes) {
     const std::string text = name + ": " + note;
     // What reading said is not said again.
@@ -423,7 +430,7 @@ Operation declared_operation() {
 Operation retarget_operation() {
   Operation operation = declared_operation();
   operation.parameters = concatenated<Parameter>(
-      {retarget_parameters().declared(), match_parameters(), frame_parameters().declared()});
+      {retarget_parameters().declared(), match_parameters(), driving_parameters().declared()});
   operation.exclusions = retarget_exclusions();
   operation.examples = {
       "retarget actor/ double.glb --weights talk.csv -o talk_double.csv --map-out map.json",

@@ -10,12 +10,21 @@ BoundParameters<SequenceSource> frame_parameters() {
       .add("fps", SequenceSource::kFps, "frame rate of formats without times, as 30 or 24000/1001");
 }
 
+BoundParameters<SequenceSource> weight_scale_parameter() {
+  BoundParameters<SequenceSource> list;
+  return list
+      .add("weight-scale", SequenceSource::kWeightScale,
+           "factor of the weights, as 0.01 for percent; without it, weights above 2 are refused")
+      .brief("factor of the weights, as 0.01 for percent");
+}
+
 BoundParameters<SequenceSource> sequence_parameters() {
   BoundParameters<SequenceSource> list;
   return list
       .add("weights", SequenceSource::kWeights,
            "CSV or JSON of blendshape weights that drive a model")
       .brief("CSV or JSON of weights that drive a model")
+      .add(weight_scale_parameter())
       .add("topology", SequenceSource::kTopology, "mesh with the faces of a file that holds none")
       .add(frame_parameters());
 }

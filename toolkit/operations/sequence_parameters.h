@@ -9,6 +9,8 @@ namespace mimetra {
 
 /// --frames, and --fps of all that has no times.
 BoundParameters<SequenceSource> frame_parameters();
+/// --weight-scale.
+BoundParameters<SequenceSource> weight_scale_parameter();
 /// All that a sequence is read by: --weights, --topology, --frames and --fps.
 BoundParameters<SequenceSource> sequence_parameters();
 /// --double of mesh files, --single of arrays, and --format of folders, which have --double too.
