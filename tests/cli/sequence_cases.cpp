@@ -92,8 +92,8 @@ void add_stray_files(std::vector<BadInput>& all) {
            },
            "info take", 3, {"take/f3.obj", "leads nowhere, to gone.obj"});
   add_case(all, "padded_pattern_for_unpadded_files", "frames_obj", take("obj", {}),
-           "info take/f%04d.obj", 0,
-           {"take/f%04d.obj: matches no file; 'take/f%d.obj' is taken for it, f0.obj to f"});
+           "info take/f%04d.obj", 3,
+           {"take/f%04d.obj: matches no file; 'take/f%d.obj' matches f0.obj to f"});
   add_case(all, "rest_of_other_faces", "frames_obj",
            [](const fs::path& folder) {
              take("obj", {})(folder);

@@ -1,14 +1,11 @@
 // Folders that hold more, less or other than the frames of one sequence.
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/temporary_folder.h"
-#include "toolkit/io/file_numbers.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/sequence_file.h"
@@ -133,23 +130,18 @@ TEST_F(FolderOfFrames, OfAModelRefusesALinkThatLeadsNowhereToo) {
               AllOf(HasSubstr("jawOpen.obj"), HasSubstr("leads nowhere")));
 }
 
-TEST_F(FolderOfFrames, PatternThatMatchesNothingIsTakenForTheOneThatFits) {
+TEST_F(FolderOfFrames, PatternThatMatchesNothingNamesTheOneThatFits) {
   write_frames({8, 9, 10});
-  const auto found = [this](const std::string& name) {
-    return frames_of_pattern((folder_ / name).string());
+  const auto refusal = [this](const std::string& name) {
+    return test::message_of<IoError>([&] { frames_of_pattern((folder_ / name).string()); });
   };
-  const FrameSeries unpadded = found("f_%04d.obj");
-  EXPECT_THAT(unpadded.frames,
-              ElementsAre(folder_ / "f_8.obj", folder_ / "f_9.obj", folder_ / "f_10.obj"));
-  EXPECT_THAT(unpadded.notes,
-              ElementsAre(AllOf(HasSubstr("f_%04d.obj: matches no file; '"),
-                                HasSubstr("f_%d.obj' is taken for it, f_8.obj to f_10.obj"))));
+  EXPECT_THAT(refusal("f_%04d.obj"), AllOf(HasSubstr("f_%04d.obj: matches no file; '"),
+                                           HasSubstr("f_%d.obj' matches f_8.obj to f_10.obj")));
   fs::remove(folder_ / "f_10.obj");
   fs::rename(folder_ / "f_8.obj", folder_ / "f_0008.obj");
   fs::rename(folder_ / "f_9.obj", folder_ / "f_0009.obj");
-  EXPECT_EQ(found("f_%d.obj").frames.size(), 2U);
-  EXPECT_THAT(found("f_%d.obj").notes, ElementsAre(HasSubstr("f_%04d.obj' is taken for it")));
-  EXPECT_THAT(test::message_of<IoError>([&] { found("g_%d.obj"); }), testing::EndsWith("OM file"));
+  EXPECT_THAT(refusal("f_%d.obj"), HasSubstr("f_%04d.obj' matches f_0008.obj to f_0009.obj"));
+  EXPECT_THAT(refusal("g_%d.obj"), testing::EndsWith("OM file"));
 }
 
 TEST_F(FolderOfFrames, PatternThatMatchesSomeFilesNamesTheOthersAndThePatternOfAll) {
@@ -214,24 +206,6 @@ TEST_F(OrderOfFrames, OfPaddedNumbersBelowZeroMatchesThePatternOfAnyProgram) {
   }
 }
 
-TEST_F(OrderOfFrames, IsThatOfDecimalNumbers) {
-  // Without even steps, without a point in some, with as many digits behind the point.
-  const std::vector<std::vector<std::string>> takes = {{"0.033", "0.1", "0.133", "2.5"},
-                                                       {"0", "0.5"},
-                                                       {"t_0", "t_0.04", "t_0.08", "t_0.12"},
-                                                       {"t_0.10", "t_0.25", "t_0.50", "t_0.75"}};
-  for (const std::vector<std::string>& stems : takes) {
-    EXPECT_THAT(ordered(stems), ElementsAreArray(stems));
-  }
-  const std::vector<std::string> some = {"t_9", "t_9.5", "t_10", "t_10.5", "t_11", "t_11.5"};
-  EXPECT_THAT(ordered(some), ElementsAreArray(some));
-  EXPECT_THAT(series().notes, ElementsAre(HasSubstr("the numbers 9 to 11.5")));
-  const std::vector<std::string> even = {"t_0.0", "t_0.25", "t_0.5", "t_0.75", "t_1.0", "t_1.25"};
-  EXPECT_THAT(ordered(even), ElementsAreArray(even));
-  EXPECT_THAT(series().notes,
-              ElementsAre(AllOf(HasSubstr("0.0 to 1.25"), HasSubstr("not taken for times"))));
-}
-
 TEST_F(OrderOfFrames, LeavesOutAMeshThatIsNamedAsItsTake) {
   // Beside frames of any step, also where its number is 0.
   const std::vector<std::vector<std::string>> takes = {
@@ -244,87 +218,42 @@ TEST_F(OrderOfFrames, LeavesOutAMeshThatIsNamedAsItsTake) {
   EXPECT_THAT(series().notes, ElementsAre(HasSubstr("take1.obj is left out of the 3 frames")));
 }
 
-TEST_F(OrderOfFrames, BehindANumberAndAPointIsThatOfIntegers) {
-  const std::vector<std::string> some = {"v1.8", "v1.9", "v1.11", "v1.12"};
-  EXPECT_THAT(ordered(some), ElementsAreArray(some));
-  // The last ones are even as decimals, too.
+/// In the same order, whole or decimal, they are taken; else only a pattern tells.
+TEST_F(OrderOfFrames, BehindANumberAndAPointMustNotDependOnWhatThePointIs) {
   const std::vector<std::vector<std::string>> takes = {
-      {"v1.8", "v1.9", "v1.10", "v1.11"},
-      {"v2.0009", "v2.0010", "v2.0011"},
-      {"s1.2", "s1.3", "s1.4", "s1.5", "s1.6", "s1.7", "s1.8", "s1.9", "s1.10"}};
+      {"v1.8", "v1.9"}, {"v2.0009", "v2.0010", "v2.0011"}, {"t_0.10", "t_0.25", "t_0.50"}};
   for (const std::vector<std::string>& all : takes) {
     EXPECT_THAT(ordered(all), ElementsAreArray(all));
-    EXPECT_THAT(series().notes, IsEmpty());
+  }
+  for (const std::vector<std::string>& all : std::vector<std::vector<std::string>>{
+           {"v1.8", "v1.9", "v1.10"}, {"v1.1", "v1.5", "v1.25"}}) {
+    write_alone(all);
+    const std::string pattern = (folder_ / "v1.%d.obj").string();
+    const auto names_both = AllOf(HasSubstr("/" + all[2] + ".obj: comes before " + all[1] +
+                                            ".obj if their numbers are decimal, and behind it if"),
+                                  HasSubstr("by a pattern, '" + pattern + "'"));
+    EXPECT_THAT(refusal(), names_both);
+    const std::string glob = (folder_ / "v*.obj").string();
+    EXPECT_THAT(test::message_of<IoError>([&] { frames_of_pattern(glob); }), names_both);
+    std::vector<std::string> names;
+    for (const fs::path& frame : frames_of_pattern(pattern).frames) {
+      names.push_back(frame.stem().string());
+    }
+    EXPECT_THAT(names, ElementsAreArray(all));
   }
 }
 
-TEST_F(OrderOfFrames, OfAPatternTakesAMeshBesideItsFrames) {
-  for (const char* name : {"take1.obj", "take1.8.obj", "take1.9.obj", "take1.10.obj"}) write(name);
-  EXPECT_EQ(frames_of_pattern((folder_ / "take1*.obj").string()).frames.size(), 4u);
-}
-
-TEST_F(OrderOfFrames, ThatNothingTellsIsRefused) {
-  for (const char* name : {"t_0.1.obj", "t_0.25.obj", "t_0.5.obj", "t_0.75.obj"}) write(name);
-  const auto names_both =
-      AllOf(HasSubstr("/t_0.25.obj: comes before t_0.5.obj if their numbers are "
-                      "decimal, and behind it if not"),
-            HasSubstr("give all names as many digits behind the point"));
-  EXPECT_THAT(refusal(), names_both);
-  const std::string pattern = (folder_ / "t_*.obj").string();
-  EXPECT_THAT(test::message_of<IoError>([&] { frames_of_pattern(pattern); }), names_both);
-}
-
-TEST_F(OrderOfFrames, OfNumbersThatAreEvenEitherWayOrNeitherIsRefused) {
-  write_alone({"t_9.5", "t_10", "t_10.7", "t_11"});
-  EXPECT_THAT(refusal(), HasSubstr("/t_10.obj: comes before t_10.7.obj if"));
-  // 0.12, 0.21 and 0.3, or 3, 12 and 21.
-  write_alone({"t_0.3", "t_0.12", "t_0.21"});
-  EXPECT_THAT(refusal(), HasSubstr("/t_0.12.obj: comes before t_0.3.obj if"));
+TEST_F(OrderOfFrames, OfTimesWithoutAPointInSomeIsRefused) {
+  write_alone({"t_9.5", "t_10", "t_10.5", "t_11"});
+  const std::string glob = (folder_ / "t_*.obj").string();
+  EXPECT_THAT(test::message_of<IoError>([&] { frames_of_pattern(glob); }),
+              HasSubstr("comes before"));
 }
 
 TEST_F(OrderOfFrames, IsAskedOfThoseThatAreTakenOnly) {
   write_frames({0, 1, 2, 3});
   write("f_1.5.obj");
   EXPECT_EQ(series().frames.size(), 4u);
-  const std::string pattern = (folder_ / "f_*.obj").string();
-  EXPECT_THAT(test::message_of<IoError>([&] { frames_of_pattern(pattern); }),
-              HasSubstr("/f_1.obj: comes before f_1.5.obj if"));
-}
-
-/// Files of these numbers in another order, sorted.
-std::vector<fs::path> sorted_again(std::vector<fs::path> files) {
-  std::ranges::reverse(files);
-  sort_by_numbers(files);
-  return files;
-}
-
-TEST(SortedNumbers, AreInTheOrderOfTimesAsProgramsWriteThem) {
-  for (const char* format : {"t_%g.obj", "t_%.17g.obj"}) {
-    for (const double step : {0.5, 0.25, 0.1, 0.04, 0.01, 1.0 / 24, 1.0 / 30, 1.0 / 60}) {
-      std::vector<fs::path> files;
-      for (int i = 0; i < 130; ++i) {
-        std::array<char, 64> name;
-        std::snprintf(name.data(), name.size(), format, i * step);
-        files.emplace_back(name.data());
-      }
-      EXPECT_EQ(sorted_again(files), files) << format << " in steps of " << step;
-      EXPECT_FALSE(unclear_order(files)) << format << " in steps of " << step;
-    }
-  }
-}
-
-TEST(SortedNumbers, AreInTheOrderOfFramesBehindTheNumberOfATake) {
-  for (int first = 0; first < 120; ++first) {
-    for (int count = 2; count < 30; ++count) {
-      std::vector<fs::path> files;
-      files.reserve(static_cast<std::size_t>(count));
-      for (int i = 0; i < count; ++i) {
-        files.emplace_back("take1." + std::to_string(first + i) + ".obj");
-      }
-      EXPECT_EQ(sorted_again(files), files) << count << " from " << first;
-      EXPECT_FALSE(unclear_order(files)) << count << " from " << first;
-    }
-  }
 }
 
 TEST_F(FolderOfFrames, OfOneNumberAreNamedByTheirFoldersOrPatterns) {
@@ -342,25 +271,11 @@ TEST_F(FolderOfFrames, OfOneNumberAreNamedByTheirFoldersOrPatterns) {
               AllOf(HasSubstr("/f_%d.obj'"), HasSubstr("/f_%02d.obj'")));
 }
 
-TEST(Patterns, OfOtherProgramsAreWrittenForPrintf) {
-  EXPECT_EQ(printf_pattern("a/head.####.obj"), "a/head.%04d.obj");
-  EXPECT_EQ(printf_pattern("head.@@@@.obj"), "head.%04d.obj");
-  EXPECT_EQ(printf_pattern("head.$F4.obj"), "head.%04d.obj");
-  EXPECT_EQ(printf_pattern("head_#.obj"), "head_%d.obj");
-  EXPECT_EQ(printf_pattern("head_$F.obj"), "head_%d.obj");
-  EXPECT_EQ(printf_pattern("head_{0..11}.obj"), "head_%d.obj");
-  EXPECT_EQ(printf_pattern("head_{0001..0300}.obj"), "head_%04d.obj");
-  EXPECT_EQ(printf_pattern("head_[0-9].obj"), "head_%d.obj");
-  EXPECT_EQ(printf_pattern("head_[0-9][0-9].obj"), "head_%02d.obj");
-  EXPECT_EQ(printf_pattern("head_{smile}.obj"), "");
-  EXPECT_EQ(printf_pattern("head_{a..b}.obj"), "");
-  EXPECT_EQ(printf_pattern("head_}..{.obj"), "");
-  EXPECT_EQ(printf_pattern("head_{..}.obj"), "");
-  EXPECT_EQ(printf_pattern("actor@identity003=1.5"), "");
-  EXPECT_EQ(printf_pattern("head.obj"), "");
-  for (const char* name : {"gone/h.####.obj", "gone/h.@@@@.obj", "gone/h.$F4.obj"}) {
+TEST(Patterns, OfOtherProgramsAreNamed) {
+  for (const char* name : {"gone/h.####.obj", "gone/h.@@@@.obj", "gone/h.$F4.obj",
+                           "gone/h_{0001..0300}.obj", "gone/h_[0-9].obj"}) {
     EXPECT_THAT(test::message_of<IoError>([&] { open_sequence(name); }),
-                HasSubstr("is written 'gone/h.%04d.obj'"));
+                HasSubstr("by a pattern such as 'gone/frame_%04d.obj'"));
   }
 }
 

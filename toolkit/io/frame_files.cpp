@@ -39,38 +39,6 @@ std::optional<NumberField> number_field(const std::string& name) {
   return NumberField{begin, at + 1, width};
 }
 
-/// From `begin` on as many times `part` as there are.
-std::size_t times_at(const std::string& name, std::size_t begin, std::string_view part) {
-  std::size_t times = 0;
-  while (name.compare(begin + times * part.size(), part.size(), part) == 0) ++times;
-  return times;
-}
-
-/// `####`, `@@@@`, `$F4`, `[0-9][0-9]` or `{0001..0300}` in a file's name.
-std::optional<NumberField> foreign_field(const std::string& name) {
-  for (const auto& [first, part] :
-       {std::pair<std::string_view, std::string_view>{"#", "#"}, {"@@", "@"}, {"[0-9]", "[0-9]"}}) {
-    const std::size_t begin = name.find(first);
-    if (begin == std::string::npos) continue;
-    const std::size_t digits = times_at(name, begin, part);
-    return NumberField{begin, begin + digits * part.size(), digits};
-  }
-  if (const std::size_t begin = name.find("$F"); begin != std::string::npos) {
-    const std::size_t end = begin + 2;
-    if (end == name.size() || !is_digit(name[end])) return NumberField{begin, end, 0};
-    return NumberField{begin, end + 1, static_cast<std::size_t>(name[end] - '0')};
-  }
-  const std::size_t begin = name.find('{'), dots = name.find("..", begin),
-                    end = name.find('}', dots);
-  if (end == std::string::npos) return std::nullopt;
-  const std::string first = name.substr(begin + 1, dots - begin - 1);
-  const std::string last = name.substr(dots + 2, end - dots - 2);
-  if (first.empty() || last.empty() || !std::ranges::all_of(first + last, is_digit)) {
-    return std::nullopt;
-  }
-  return NumberField{begin, end + 1, first[0] == '0' ? first.size() : 0};
-}
-
 /// The digits between `before` and `after` in a name that has nothing else between them, but a '-'
 /// where it is a sign (file_numbers.h); else "".
 std::string digits_between(const std::string& name, const std::string& before,
@@ -276,15 +244,6 @@ std::vector<fs::path> files_named(const std::string& text) {
   return files;
 }
 
-std::string printf_pattern(const fs::path& pattern) {
-  const std::string name = pattern.filename().string();
-  const std::optional<NumberField> field = foreign_field(name);
-  if (!field) return {};
-  const std::string number = field->width > 1 ? "%0" + std::to_string(field->width) + "d" : "%d";
-  return (pattern.parent_path() / (name.substr(0, field->begin) + number + name.substr(field->end)))
-      .string();
-}
-
 std::string note_on_digits(const std::string& pattern) {
   const std::vector<fs::path> all = files_of_any_digits(pattern);
   if (all.empty()) return "";
@@ -307,18 +266,16 @@ FrameSeries frames_of_pattern(const std::string& pattern) {
   std::string nothing = "matches no OBJ, PLY, OFF, STL or OM file";
   if (files.empty()) {
     if (const std::vector<fs::path> near = files_of_any_digits(pattern); !near.empty()) {
-      const std::string fitting = fitting_pattern(pattern, near);
-      FrameSeries found = frames_of_pattern(fitting);
-      found.notes.push_back(pattern + ": matches no file; '" + fitting + "' is taken for it, " +
-                            near.front().filename().string() + " to " +
-                            near.back().filename().string());
-      return found;
+      throw IoError(pattern, "matches no file; '" + fitting_pattern(pattern, near) + "' matches " +
+                                 near.front().filename().string() + " to " +
+                                 near.back().filename().string());
     }
     const bool is_both =
         !printf_field(pattern) && number_field(fs::path(pattern).filename().string());
     if (is_both) nothing += "; beside '*' or '?' write '*' in the place of the number, too";
   }
-  FrameSeries found = series_of_pattern(mesh_files(std::move(files), pattern, nothing), pattern);
+  FrameSeries found = series_of_pattern(mesh_files(std::move(files), pattern, nothing), pattern,
+                                        printf_field(pattern).has_value());
   check_one_format(found.frames, pattern, "matches");
   if (std::string note = note_on_digits(pattern); !note.empty()) {
     found.notes.push_back(std::move(note));

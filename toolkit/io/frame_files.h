@@ -25,20 +25,15 @@ bool is_frame_pattern(const std::string& text);
 /// natural order; maybe none. Throws IoError for a folder that cannot be read.
 std::vector<std::filesystem::path> files_named(const std::string& text);
 
-/// The printf pattern for a number as other programs and shells write it, "head.####.obj",
-/// "head.@@@@.obj", "head.$F4.obj", "head.{0001..0300}.obj" and "head.[0-9][0-9].obj"; "" for
-/// another name.
-std::string printf_pattern(const std::filesystem::path& pattern);
-
 /// What to say of a printf pattern that matches some files and leaves out others with more or fewer
 /// digits, and the pattern that takes all; "" where there are none.
 std::string note_on_digits(const std::string& pattern);
 
-/// The mesh files that a glob or printf pattern matches, in natural order; where a printf pattern
-/// matches none, those whose numbers have other digits, with a note. Throws IoError where there is
-/// none, they are of several formats, two have one number, nothing tells their order, or one is a
-/// link that leads nowhere. Rest poses and topologies of other sequences are no frames, unless the
-/// pattern asks for them by their suffix.
+/// The mesh files that a glob or printf pattern matches, in natural order. Throws IoError where
+/// there is none, with the pattern of those whose numbers have other digits, they are of several
+/// formats, two have one number, nothing tells their order, or one is a link that leads nowhere.
+/// Rest poses and topologies of other sequences are no frames, unless the pattern asks for them by
+/// their suffix.
 FrameSeries frames_of_pattern(const std::string& pattern);
 
 /// The mesh files of a folder, hidden ones and those that belong to other sequences left out, in

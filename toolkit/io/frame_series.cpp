@@ -26,10 +26,10 @@ std::string pattern_of(const NumberedName& name) {
 }
 
 /// Two files of one number, such as frame_1.obj and frame_01.obj.
-void check_numbers(const std::vector<fs::path>& frames, const FileNumbers& numbers) {
+void check_numbers(const std::vector<fs::path>& frames) {
   std::map<std::pair<std::string, long long>, fs::path> known;
   for (const fs::path& frame : frames) {
-    const NumberedName& name = numbers.of(frame);
+    const NumberedName name = numbered(frame);
     if (name.series.empty()) continue;
     const auto [first, is_new] = known.try_emplace({name.series, name.number}, frame);
     if (is_new) continue;
@@ -42,7 +42,7 @@ void check_numbers(const std::vector<fs::path>& frames, const FileNumbers& numbe
     }
     throw IoError(frame.string(), has + first->second.filename().string() + ", " + number +
                                       "; name the frames by a pattern, '" +
-                                      (folder / pattern_of(numbers.of(first->second))).string() +
+                                      (folder / pattern_of(numbered(first->second))).string() +
                                       "' or '" + (folder / pattern_of(name)).string() + "'");
   }
 }
@@ -50,12 +50,12 @@ void check_numbers(const std::vector<fs::path>& frames, const FileNumbers& numbe
 void check_order(const std::vector<fs::path>& frames) {
   const auto unclear = unclear_order(frames);
   if (!unclear) return;
+  const fs::path pattern = unclear->second.parent_path() / pattern_of(numbered(unclear->second));
   throw IoError(unclear->second.string(),
                 "comes before " + unclear->first.filename().string() +
-                    " if their numbers are decimal, and behind it if not, and nothing tells which; "
-                    "name by a pattern only those that are meant, or give all names as many digits "
-                    "behind the point, with zeros at the end of decimals or in front of whole "
-                    "numbers");
+                    " if their numbers are decimal, and behind it if not; give all names as many "
+                    "digits behind the point, or name whole numbers by a pattern, '" +
+                    pattern.string() + "'");
 }
 
 /// "7", or "12 to 15".
@@ -64,20 +64,14 @@ std::string run_of(long long first, long long last) {
   return first == last ? text : text + " to " + std::to_string(last);
 }
 
-/// What numbers may not mean: those below 0 and with a point.
-void note_numbers(FrameSeries& found, const FileNumbers& numbers, const std::string& name) {
-  const NumberedName& first = numbers.of(found.frames.front());
-  const NumberedName& last = numbers.of(found.frames.back());
+/// A '-' before all numbers may be no sign.
+void note_numbers(FrameSeries& found, const std::string& name) {
+  const NumberedName first = numbered(found.frames.front());
+  const NumberedName last = numbered(found.frames.back());
   if (first.series.empty() || found.frames.size() < 2 || last.series != first.series) return;
-  if (numbers.is_decimal(first.series)) {
-    found.notes.push_back(name + ": frames are in the order of the numbers " + first.text + " to " +
-                          last.text +
-                          ", which are not taken for times; where these are seconds, give frames "
-                          "per second by option 'fps'");
-  } else if (last.number < 0) {
-    found.notes.push_back(name + ": all frames have numbers below 0, " + first.text + " to " +
-                          last.text + "; where '-' is no sign, they are in the wrong order");
-  }
+  if (last.number >= 0) return;
+  found.notes.push_back(name + ": all frames have numbers below 0, " + first.text + " to " +
+                        last.text + "; where '-' is no sign, they are in the wrong order");
 }
 
 /// Whether their differences are numbers of frames, and none overflows.
@@ -99,18 +93,17 @@ void note_missing(FrameSeries& found, const std::string& name) {
 }
 
 /// Numbered series of more than one file, and how many files each has.
-std::map<std::string, std::size_t> numbered_series(const std::vector<fs::path>& files,
-                                                   const FileNumbers& numbers) {
+std::map<std::string, std::size_t> numbered_series(const std::vector<fs::path>& files) {
   std::map<std::string, std::size_t> sizes;
-  for (const fs::path& file : files) ++sizes[numbers.of(file).series];
+  for (const fs::path& file : files) ++sizes[numbered(file).series];
   std::erase_if(sizes, [](const auto& entry) { return entry.first.empty() || entry.second < 2; });
   return sizes;
 }
 
 /// The series that more than half of the files are of; empty where there is none, or it is one
 /// file.
-std::string main_series(const std::vector<fs::path>& files, const FileNumbers& numbers) {
-  for (const auto& [series, size] : numbered_series(files, numbers)) {
+std::string main_series(const std::vector<fs::path>& files) {
+  for (const auto& [series, size] : numbered_series(files)) {
     if (2 * size > files.size()) return series;
   }
   return {};
@@ -125,13 +118,13 @@ std::string names_of(const std::vector<fs::path>& files) {
 
 /// Moves the files that are not of the main series out of `files`; not those of another format,
 /// which leave open what is meant.
-std::vector<fs::path> strangers_in(std::vector<fs::path>& files, const FileNumbers& numbers) {
+std::vector<fs::path> strangers_in(std::vector<fs::path>& files) {
   std::vector<fs::path> strangers;
-  const std::string series = main_series(files, numbers);
+  const std::string series = main_series(files);
   if (series.empty()) return strangers;
   const std::string extension = lower_extension(series);
   std::erase_if(files, [&](const fs::path& file) {
-    if (numbers.of(file).series == series || lower_extension(file) != extension) return false;
+    if (numbered(file).series == series || lower_extension(file) != extension) return false;
     strangers.push_back(file);
     return true;
   });
@@ -143,14 +136,14 @@ struct SplitFiles {
   std::vector<fs::path> strangers;
 };
 
-SplitFiles split(std::vector<fs::path> files, const FileNumbers& numbers) {
+SplitFiles split(std::vector<fs::path> files) {
   FrameSeries found;
   if (std::ranges::count_if(files, is_neutral) == 1 && files.size() > 1) {
     const auto neutral = std::ranges::find_if(files, is_neutral);
     found.rest = *neutral;
     files.erase(neutral);
   }
-  std::vector<fs::path> strangers = strangers_in(files, numbers);
+  std::vector<fs::path> strangers = strangers_in(files);
   found.frames = std::move(files);
   return {std::move(found), std::move(strangers)};
 }
@@ -162,18 +155,16 @@ bool is_neutral(const fs::path& file) {
 }
 
 FrameSeries frames_among(std::vector<fs::path> files) {
-  const FileNumbers numbers(files);
-  return split(std::move(files), numbers).series;
+  return split(std::move(files)).series;
 }
 
 FrameSeries series_in_folder(std::vector<fs::path> files, const fs::path& folder) {
-  const FileNumbers numbers(files);
-  auto [found, strangers] = split(std::move(files), numbers);
+  auto [found, strangers] = split(std::move(files));
   if (!strangers.empty()) {
     found.notes.push_back(folder_text(folder) + ": " + names_of(strangers) +
                           (strangers.size() == 1 ? " is" : " are") + " left out of the " +
                           std::to_string(found.frames.size()) + " frames " +
-                          numbers.of(found.frames.front()).series +
+                          numbered(found.frames.front()).series +
                           "; name files by a pattern to take them");
   }
   if (found.rest) {
@@ -182,17 +173,16 @@ FrameSeries series_in_folder(std::vector<fs::path> files, const fs::path& folder
                           " files, and is no frame; name files by a pattern to take it for one");
   }
   check_links(found.frames);
-  check_numbers(found.frames, numbers);
+  check_numbers(found.frames);
   check_order(found.frames);
-  note_numbers(found, numbers, folder_text(folder));
+  note_numbers(found, folder_text(folder));
   note_missing(found, folder_text(folder));
   return found;
 }
 
 void check_one_series(const std::vector<fs::path>& files, const fs::path& folder) {
-  const FileNumbers numbers(files);
-  const std::map<std::string, std::size_t> all = numbered_series(files, numbers);
-  if (all.size() < 2 || !main_series(files, numbers).empty()) return;
+  const std::map<std::string, std::size_t> all = numbered_series(files);
+  if (all.size() < 2 || !main_series(files).empty()) return;
   std::vector<std::string> series, patterns;
   for (const auto& [name, size] : all) {
     series.push_back(std::to_string(size) + " files " + name);
@@ -205,9 +195,8 @@ void check_one_series(const std::vector<fs::path>& files, const fs::path& folder
 }
 
 void check_are_numbered(const std::vector<fs::path>& files, const fs::path& folder) {
-  const FileNumbers numbers(files);
   std::size_t numbered = 0;
-  for (const auto& [series, size] : numbered_series(files, numbers)) numbered += size;
+  for (const auto& [series, size] : numbered_series(files)) numbered += size;
   if (files.size() < 2 || 2 * numbered > files.size()) return;
   throw MismatchError(folder.string() + ": holds " + std::to_string(files.size()) +
                       " meshes without frame numbers (" + names_of(files) +
@@ -216,34 +205,34 @@ void check_are_numbered(const std::vector<fs::path>& files, const fs::path& fold
                       folder_text(folder) + '*' + files.front().extension().string() + "'");
 }
 
-FrameSeries series_of_pattern(std::vector<fs::path> files, const std::string& pattern) {
+FrameSeries series_of_pattern(std::vector<fs::path> files, const std::string& pattern,
+                              bool are_whole_numbers) {
   FrameSeries found{std::move(files)};
-  const FileNumbers numbers(found.frames);
   check_links(found.frames);
-  check_numbers(found.frames, numbers);
-  check_order(found.frames);
+  check_numbers(found.frames);
+  if (!are_whole_numbers) check_order(found.frames);
   std::vector<fs::path> numbered_frames = found.frames;
-  const std::vector<fs::path> strangers = strangers_in(numbered_frames, numbers);
+  const std::vector<fs::path> strangers = strangers_in(numbered_frames);
   if (!strangers.empty()) {
     found.notes.push_back(pattern + ": " + names_of(strangers) +
                           (strangers.size() == 1 ? " is a frame" : " are frames") +
                           " too, as the pattern says, beside " +
                           std::to_string(numbered_frames.size()) + " of one series");
   }
-  note_numbers(found, numbers, pattern);
+  note_numbers(found, pattern);
   note_missing(found, pattern);
   return found;
 }
 
 std::vector<std::string> missing_numbers(const std::vector<fs::path>& files) {
   if (files.empty()) return {};
-  const FileNumbers names(files);
-  const std::string series = names.of(files.front()).series;
-  if (series.empty() || names.is_decimal(series)) return {};
+  const std::string series = numbered(files.front()).series;
+  if (series.empty()) return {};
   std::vector<long long> numbers;
   for (const fs::path& file : files) {
-    if (names.of(file).series != series) return {};
-    numbers.push_back(names.of(file).number);
+    const NumberedName name = numbered(file);
+    if (name.series != series) return {};
+    numbers.push_back(name.number);
   }
   return missing_numbers(std::move(numbers));
 }

@@ -40,8 +40,10 @@ void check_one_series(const std::vector<std::filesystem::path>& files,
 void check_are_numbered(const std::vector<std::filesystem::path>& files,
                         const std::filesystem::path& folder);
 
-/// All `files` are frames. Throws as series_in_folder.
-FrameSeries series_of_pattern(std::vector<std::filesystem::path> files, const std::string& pattern);
+/// All `files` are frames, in the order of numbers that are known to be whole by a printf pattern.
+/// Throws as series_in_folder.
+FrameSeries series_of_pattern(std::vector<std::filesystem::path> files, const std::string& pattern,
+                              bool are_whole_numbers);
 
 /// Numbers between those of files of one series that none of them has, as "7" or "9 to 12"; none
 /// for other files, and where a number occurs twice. They may count by any step.

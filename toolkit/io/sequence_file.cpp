@@ -67,10 +67,13 @@ OpenSequence open_path(const fs::path& path, const SequenceSource& source, const
 
 /// Throws IoError for a name in which another sign than those of printf stands for digits.
 void check_digits(const std::string& text) {
-  const std::string pattern = printf_pattern(text);
-  if (pattern.empty() || !is_mesh_extension(fs::path(text).extension().string())) return;
-  throw IoError(text, "no such file or folder; a pattern for files of many numbers is written '" +
-                          pattern + "'");
+  const fs::path file(text);
+  const std::string name = file.filename().string();
+  const bool has_sign = name.find_first_of("#@$[{") != std::string::npos;
+  if (!has_sign || !is_mesh_extension(file.extension().string())) return;
+  const fs::path pattern = file.parent_path() / ("frame_%04d" + file.extension().string());
+  throw IoError(text, "no such file or folder; numbered files are named by a pattern such as '" +
+                          pattern.string() + "'");
 }
 
 OpenSequence opened(const std::string& text, const SequenceSource& source, const Context& context) {
