@@ -183,7 +183,7 @@ TEST(HeatOperators, AreThoseOfCgalOnTheIntrinsicDelaunayTriangulation) {
 /// On meshes of CGAL's own. What is left is rounding, 1e-16 times the conditions of the heat step
 /// and of the Poisson system, each below 1e4 for some thousand triangles.
 TEST(HeatGeodesics, AreThoseOfCgalOnItsOwnMesh) {
-  constexpr double kRounding = 1e-9;
+  constexpr double kConditions = 1e-9;
   for (const Shape& shape : {test::bumpy_sphere(4), sheet()}) {
     const SurfaceComponents parts(shape.positions, shape.triangles, Degenerate::refused);
     const SurfaceComponent& component = parts.components.at(0);
@@ -194,10 +194,10 @@ TEST(HeatGeodesics, AreThoseOfCgalOnItsOwnMesh) {
       using CGAL::Heat_method_3::Intrinsic_Delaunay;
       EXPECT_LT(test::relative_error(intrinsic.distances(source),
                                      distances_of_cgal<Intrinsic_Delaunay>(component, source)),
-                kRounding);
+                kConditions);
       EXPECT_LT(test::relative_error(direct.distances(source),
                                      distances_of_cgal<Direct>(component, source)),
-                kRounding);
+                kConditions);
     }
   }
 }
