@@ -17,7 +17,7 @@ namespace mimetra {
 
 namespace {
 
-/// Below this share of the first singular value the third says nothing about depth.
+/// Below this share of the first singular value, the third one says nothing about depth.
 constexpr double kCoplanar = 1e-3;
 
 }  // namespace
@@ -29,8 +29,8 @@ AffineCamera estimate_affine_camera(const ModelPoints& points, const ImagePoints
                         std::to_string(kLandmarksOfCamera) + " that are not coplanar");
   }
   fix_product_blocking();
-  // Normalised coordinates are centred on both sides. Their scales cancel in the closed form: a
-  // linear regression commutes with them, and the eigenvalues' ratios do not depend on them.
+  // Both sides are centred. Their scales cancel in the closed form: a linear regression commutes
+  // with scaling, and ratios of eigenvalues do not depend on it.
   const Eigen::RowVector3d centre = points.colwise().mean();
   const Eigen::RowVector2d image_centre = image.colwise().mean();
   const ModelPoints centred = points.rowwise() - centre;
@@ -85,7 +85,7 @@ Eigen::Matrix3d head_rotation(const AffineCamera& camera) {
   Eigen::Matrix3d seen;
   seen.topRows<2>() = svd.matrixU() * svd.matrixV().leftCols<2>().transpose();
   seen.row(2) = seen.row(0).cross(seen.row(1));
-  // Images have y down, and so z away from the viewer.
+  // y points down in images, so z points away from the viewer.
   return Eigen::Vector3d(1, -1, -1).asDiagonal() * seen;
 }
 

@@ -9,48 +9,49 @@
 
 namespace mimetra {
 
-/// The upper two rows of an affine camera's 3 x 4 matrix, whose last row is 0 0 0 1: image point =
-/// C (x y z 1)^T, in pixels, y down.
+/// Upper two rows of an affine camera's 3 x 4 matrix, whose last row is 0 0 0 1. It maps points to
+/// pixels, y down: image point = C (x y z 1)^T.
 using AffineCamera = Eigen::Matrix<double, 2, 4>;
 
-/// Points of a model, one row each, in the model's unit.
+/// Points of a model, one a row, in the unit of the model.
 using ModelPoints = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
-/// Points of an image, one row each: x, y in pixels, y down, 0 at the middle of the first pixel.
+/// Points of an image, one a row: x, y in pixels, y down, 0 at the middle of the first pixel.
 using ImagePoints = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 
-/// Landmarks that an affine camera needs at least.
+/// Number of landmarks that an affine camera needs at least.
 inline constexpr int kLandmarksOfCamera = 4;
 
-/// The camera that minimises the squared distances of projected points to `image` points, by the
-/// Gold Standard algorithm. Throws MismatchError where there are fewer than four points, or where
-/// they are coplanar: the third singular value of the centred points is below 1e-3 of the first.
+/// Camera that minimises the squared distances between projected points and `image` points, found
+/// by the Gold Standard algorithm. Throws MismatchError if there are fewer than four points or if
+/// they are coplanar. Coplanar means that the third singular value of the centred points is at most
+/// 1e-3 of the first.
 ///
 /// [Hartley, Zisserman. Multiple View Geometry in Computer Vision, 2nd ed., 2004], algorithm 14.1
 AffineCamera estimate_affine_camera(const ModelPoints& points, const ImagePoints& image);
 
-/// Where the camera sees the points. `depth`: the third row of a perspective camera's matrix.
+/// Projects the points into the image. `depth` is the third row of a perspective camera's matrix.
 ImagePoints project(const AffineCamera& camera, const ModelPoints& points,
                     const Eigen::RowVector4d& depth = {0, 0, 0, 1});
 
-/// Root of the mean squared distance of points (n x D) from their centroid.
+/// Root of the mean squared distance between points (n x D) and their centroid.
 double rms_radius(const Eigen::MatrixXd& points);
 
-/// The points of a frame of landmarks (F x 2n: x0 y0 x1 ...), one row each.
+/// Points of one frame, one a row. `landmarks` is F x 2n: x0 y0 x1 ...
 ImagePoints points_of_frame(const Frames& landmarks, Eigen::Index frame);
 
-/// The landmarks of a frame (F x 2n) that are seen: both of their coordinates are finite.
+/// Landmarks (F x 2n) that are seen in a frame: both of their coordinates are finite.
 std::vector<Eigen::Index> seen_landmarks(const Frames& landmarks, Eigen::Index frame);
 
-/// How the head is turned for whoever looks through the camera: carries the model, which looks
-/// along +z with y up, to how it stands before a viewer with y up. The identity for a face that is
-/// seen upright from the front. It is the rotation nearest to the camera's linear part; what that
-/// shears or stretches is left out. \pre the camera sees the model from some side: rank 2
+/// Rotation of the head as seen through the camera: identity for an upright face seen from the
+/// front. It maps model axes (looking along +z, y up) to the axes of a viewer with y up. It is the
+/// rotation nearest to the camera's linear part; shear and stretch are dropped. \pre The camera's
+/// linear part has rank 2.
 Eigen::Matrix3d head_rotation(const AffineCamera& camera);
 
-/// Each frame (F) turned by its camera's rotation about the middle of the rest pose, which stays;
-/// in the model's own axes, looking_ahead(), so that a head that moves little stays near its rest
-/// pose. Throws std::invalid_argument for another number of cameras.
+/// Turns each frame (F) by its camera's rotation about the middle of the rest pose, which stays.
+/// The rotation acts in the model's own axes (looking_ahead()), so a head that moves little stays
+/// near its rest pose. Throws std::invalid_argument if the number of cameras is not F.
 MeshSequence turned_as_seen(const MeshSequence& sequence, const std::vector<AffineCamera>& cameras,
                             const LandmarkVertices& landmarks);
 

@@ -12,7 +12,7 @@ namespace mimetra {
 
 namespace {
 
-/// Normal equations of a coefficient vector, with half the energy's gradient.
+/// Normal equations of a coefficient vector; `h` is their right side.
 struct NormalEquations {
   Eigen::VectorXd packed_gram;
   Eigen::VectorXd h;
@@ -30,7 +30,7 @@ NormalEquations identity_equations(const FittedFrame& frame) {
                                                     frame.residual_without_identity())};
 }
 
-/// alpha of eq. 4.
+/// Solves eq. 4 for alpha.
 Eigen::VectorXd identity(const NormalEquations& equations) {
   Eigen::MatrixXd system = lower_triangle(equations.packed_gram, equations.h.size());
   system.diagonal().array() += 1;
@@ -40,7 +40,7 @@ Eigen::VectorXd identity(const NormalEquations& equations) {
 
 class Alternation {
  public:
-  /// Smooth over time if there are `times`.
+  /// Smooths over time if there are `times`.
   Alternation(std::vector<FittedFrame> frames, const FitOptions& options,
               const Eigen::VectorXd& times, const Context& context)
       : frames_(std::move(frames)),
@@ -52,7 +52,7 @@ class Alternation {
 
   FittedClip run() {
     FittedClip result;
-    // The smoothness term has no weight yet, so that there is no energy to compare the first with.
+    // The smoothness term has no weight yet, so there is no energy to compare the first one with.
     double before = smooth_ ? std::numeric_limits<double>::infinity()
                             : energy(frames_, one_identity_, *options_.ridge);
     while (result.iterations < options_.iterations) {
@@ -91,7 +91,7 @@ class Alternation {
     for (FittedFrame& frame : frames_) frame.set_alpha(alpha);
   }
 
-  /// beta of eq. 5.
+  /// Solves eq. 5 for beta.
   void update_expressions() {
     const Eigen::Index size = frames_.front().beta().size();
     if (size == 0) return;
@@ -118,7 +118,7 @@ class Alternation {
     if (!penalty_) {
       double mean = 0;
       for (const Eigen::MatrixXd& gram : grams) mean += gram.diagonal().mean();
-      // Kept from here on, or the energy would change its meaning between iterations.
+      // The weight stays fixed, or the energies of iterations would not be comparable.
       penalty_ = smoothness_penalty(options_.smoothness, times_, mean / double(grams.size()));
     }
     const Eigen::MatrixXd smooth = smooth_weights(grams, h, times_, *penalty_, expressions());
@@ -133,7 +133,7 @@ class Alternation {
     return beta;
   }
 
-  /// The smoothness term of the energy.
+  /// Smoothness term of the energy.
   double bending() const {
     if (!penalty_ || frames_.size() < 3) return 0;
     return *penalty_ * differences_of(second_differences(times_), expressions()).squaredNorm();

@@ -19,7 +19,7 @@ NeutralDistance neutral_distance(const MorphableModel& model, const Eigen::Vecto
 
 namespace {
 
-/// In fewer frames the neutrals of one person are up to 2.8 % apart.
+/// With fewer frames, the neutrals of one person differ by up to 2.8 %.
 constexpr std::size_t kFewestOfPlace = 75;
 
 std::vector<int> frames_between(int from, int to) {
@@ -43,7 +43,7 @@ std::optional<NeutralDistance> halves_distance(const ClipFit& clip, const Fitted
   return neutral_distance(clip.model(), first, second);
 }
 
-/// Frames with landmarks by the place of the face in the image.
+/// Groups frames with landmarks by the place of the face in the image.
 std::map<int, std::vector<int>> frames_of_places(const MappedLandmarks& mapped,
                                                  const FittedCoefficients& fit,
                                                  std::vector<int>& cuts) {
@@ -65,8 +65,8 @@ std::map<int, std::vector<int>> frames_of_places(const MappedLandmarks& mapped,
   return frames;
 }
 
-/// The largest distance of the neutrals of places with frames enough to tell; none where fewer than
-/// two have.
+/// Largest distance between the neutrals of places with enough frames; empty if fewer than two
+/// places have enough.
 std::optional<NeutralDistance> places_distance(const ClipFit& clip,
                                                std::map<int, std::vector<int>> frames,
                                                const Context& context) {

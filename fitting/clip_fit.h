@@ -8,19 +8,18 @@
 #include "toolkit/io/fit_file.h"
 #include "toolkit/mesh/context.h"
 
-/// A clip that is fitted as a whole and in parts. Internal to fit_operation.h.
+/// Fits of a clip as a whole and in parts. Internal to fit_operation.h.
 namespace mimetra {
 
-/// Fits all frames of a clip, or some of them.
 class ClipFit {
  public:
-  /// Keeps references to model and landmarks; `times` of all frames. Throws as LandmarkFitter.
+  /// Keeps references to model and landmarks. `times` covers all frames. Throws as LandmarkFitter.
   ClipFit(const MorphableModel& model, const MappedLandmarks& mapped, Eigen::VectorXd times,
           FitOptions options);
 
-  /// Throws as LandmarkFitter::fit().
+  /// Fits all frames. Throws as LandmarkFitter::fit().
   std::vector<FrameFit> all(const Context& context = {}) const;
-  /// Fits `frames`, which ascend.
+  /// Fits `frames`, given in ascending order.
   std::vector<FrameFit> of(const std::vector<int>& frames, const Context& context = {}) const;
 
   const MorphableModel& model() const { return model_; }
@@ -36,7 +35,7 @@ class ClipFit {
   LandmarkFitter fitter_;
 };
 
-/// Distances of the vertices of two neutrals, as shares of the longest side of the model's mean.
+/// Distances between the vertices of two neutrals, as shares of the longest side of the mean face.
 struct NeutralDistance {
   double mean = 0;
   double largest = 0;
@@ -45,22 +44,23 @@ struct NeutralDistance {
 NeutralDistance neutral_distance(const MorphableModel& model, const Eigen::VectorXd& a,
                                  const Eigen::VectorXd& b);
 
-/// Above this share of the longest side, on average, the neutrals of a clip's halves are those of
-/// two people. Of one person they are 0.4 to 1.2 % apart, of two 2.5 % and more.
+/// Mean distance above which the neutrals of a clip's halves belong to two people. Two halves of
+/// one person are 0.4 to 1.2 % apart; two people are 2.5 % and more apart.
 constexpr double kTwoPeople = 0.02;
 
-/// Whether a clip shows one person: distances of the neutrals that parts of it give.
+/// Distances between the neutrals that parts of a clip give: small if the clip shows one person.
 struct ClipPeople {
-  /// Of its two halves, where each has ten frames with landmarks.
+  /// Distance between the clip's halves, if each half has ten frames with landmarks.
   std::optional<NeutralDistance> halves;
-  /// The largest of any two places at which the face is in 75 frames and more, as after a cut. Of
-  /// one person they are 0.2 to 1.9 % apart, in 40 frames up to 2.1 %.
+  /// Largest distance between two places that each hold the face in 75 frames or more, as after a
+  /// cut. The places of one person are 0.2 to 1.9 % apart; with only 40 frames, up to 2.1 %.
   std::optional<NeutralDistance> places;
-  /// Frames in which the face is at another place than in the one before.
+  /// Frames in which the face is at another place than in the previous frame.
   std::vector<int> cuts;
 };
 
-/// Nothing where each frame has its shape, or the model no identities. `fit` of the whole clip.
+/// Returns nothing if each frame has its own shape or the model has no identities. `fit` is the fit
+/// of the whole clip.
 ClipPeople people_in(const ClipFit& clip, const FittedCoefficients& fit,
                      const Context& context = {});
 

@@ -12,21 +12,21 @@ namespace mimetra {
 
 namespace {
 
-/// Degrees of freedom. With fewer, frames of real footage leave a whole side of the jaw aside, and
-/// the next ones do not; with more there is no difference to normal noise.
+/// Range of the degrees of freedom. With fewer, one frame of real footage ignores a whole side of
+/// the jaw and the next does not. With more, the noise does not differ from normal noise.
 constexpr double kLeastFreedom = 6, kMostFreedom = 1000;
-/// Below it there is nothing that a detector or a person could mean: 0.01 px of a face of 100 px.
+/// Neither a detector nor a person is more precise: 0.01 px for a face of 100 px.
 constexpr double kLeastSigma = 1e-4;
-/// The noise that single frames are taken to have counts as this many coordinates beside a clip's,
-/// so that a few landmarks that fit by chance are not trusted beyond measure.
+/// Weight of the usual noise of single frames, as a number of coordinates added to the clip's. It
+/// keeps a few landmarks that fit by chance from being trusted beyond measure.
 constexpr double kBelieved = 10;
-/// So many landmarks of normal noise stand beside a clip's, so that a few of five pictures that are
-/// off do not count less.
+/// Number of normal landmarks added to a clip's. With only five pictures, it keeps landmarks that
+/// are off from losing their weight.
 constexpr double kBelievedNormal = 30;
 constexpr double kUnknownRepeated = 0.5;
 
-/// What is left of a frame's landmarks in shares of its radius, turned in the image as the face of
-/// `reference` is.
+/// Residual of a frame's landmarks as shares of its radius, rotated in the image to match the face
+/// in `reference`.
 ImagePoints aligned_residual(const FittedFrame& frame, const FittedFrame& reference) {
   const Eigen::Matrix2d M =
       reference.camera().leftCols<3>() * frame.camera().leftCols<3>().transpose();
@@ -43,9 +43,9 @@ struct Sums {
     Eigen::RowVector2d mean = Eigen::RowVector2d::Zero();
   };
   std::map<Eigen::Index, Landmark> landmarks;
-  double weight = 0;        ///< of all landmarks in all frames
-  double within = 0;        ///< squares of what is not the same in every frame
-  double own_unknowns = 0;  ///< of cameras and expressions that are not at a bound
+  double weight = 0;        ///< weight of all landmarks in all frames
+  double within = 0;        ///< squares of the part that differs between frames
+  double own_unknowns = 0;  ///< unknowns of cameras and of expressions inside their bounds
 };
 
 Sums sums_of(const std::vector<FittedFrame>& frames) {
@@ -77,10 +77,10 @@ Sums sums_of(const std::vector<FittedFrame>& frames) {
   return sums;
 }
 
-/// Of most likelihood for the distances of the frames' landmarks, as many as are independent, and
-/// of those that are believed to be normal. In the plane the density at z sigmas is
-/// (1 + z^2 / nu)^-(nu / 2 + 1) / (2 pi sigma^2), whose logarithms' sum is searched as one with a
-/// single maximum over nu.
+/// Maximum-likelihood degrees of freedom nu for the residuals of the landmarks. The residuals count
+/// as independent_frames() frames, and kBelievedNormal normal landmarks are added. The density at z
+/// sigmas in the plane is (1 + z^2 / nu)^-(nu / 2 + 1) / (2 pi sigma^2). The search assumes that
+/// the log-likelihood has a single maximum over nu.
 double likely_freedom(const std::vector<FittedFrame>& frames, const ClipNoise& noise) {
   std::vector<double> squares;
   for (const FittedFrame& frame : frames) {
@@ -93,11 +93,11 @@ double likely_freedom(const std::vector<FittedFrame>& frames, const ClipNoise& n
     const double nu = std::exp(logarithm);
     double sum = 0;
     for (const double square : squares) sum += std::log1p(square / nu);
-    // The mean of log(1 + z^2 / nu) of normal noise is e^(nu / 2) E1(nu / 2).
+    // The mean of log(1 + z^2 / nu) for normal noise is e^(nu / 2) E1(nu / 2).
     const double normal = -std::exp(nu / 2) * std::expint(-nu / 2);
     return (nu / 2 + 1) * (independent * sum + kBelievedNormal * normal);
   };
-  // By golden section: each step keeps the inner point that is left.
+  // Golden section search: each step keeps one inner point.
   constexpr double kGolden = 0.6180339887498949, kClose = 1e-3;
   double first = std::log(kLeastFreedom), last = std::log(kMostFreedom);
   double low = last - kGolden * (last - first), high = first + kGolden * (last - first);
@@ -153,10 +153,10 @@ ClipNoise estimated_noise(const std::vector<FittedFrame>& frames, double determi
   const double believed = kBelieved * kUsualSigma * kUsualSigma;
   const double freedom = std::max(0.0, 2 * (sums.weight - landmarks) - sums.own_unknowns + own);
   const double within = (believed + sums.within) / (kBelieved + freedom);
-  // Of each landmark's mean, the part that the mean of so many frames has anyway.
+  // Part of each landmark's squared mean that a mean of that many frames has by chance.
   double squares = 0, by_chance = 0, seen = 0;
   for (const auto& [index, landmark] : sums.landmarks) {
-    // One that is far off in every frame says little.
+    // A landmark that is far off in every frame gets little weight.
     const double share = std::min(1.0, landmark.weight / count);
     squares += share * landmark.mean.squaredNorm();
     by_chance += share * 2 * within / std::max(1.0, landmark.weight);
@@ -187,7 +187,7 @@ double outline_noise(const std::vector<FittedFrame>& frames, const ClipNoise& no
   if (sizes.empty()) return 0;
   const double least = std::max(noise.sigma, kLeastSigma);
   if (weight > 0) return std::max(least, std::sqrt(squares / weight));
-  constexpr double kNormal = 1.4826;  // of a median of sizes
+  constexpr double kNormal = 1.4826;  // sigma / median of sizes, for normal noise
   return std::max(least, kNormal * median(std::move(sizes)));
 }
 

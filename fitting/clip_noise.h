@@ -5,32 +5,32 @@
 
 #include "fitting/fitted_frame.h"
 
-/// The noise of a clip's landmarks, estimated from what a fit leaves of them. Internal to
+/// Noise of a clip's landmarks, estimated from the residuals of a fit. Internal to
 /// landmark_fitter.h.
 namespace mimetra {
 
-/// What is known of the noise before a fit.
+/// Parts of the noise that are fixed before a fit.
 struct KnownNoise {
-  bool sigma = false;  ///< that of the frames is
+  bool sigma = false;  ///< the frames' own sigma is used
   std::optional<double> repeated = {};
-  bool outliers = false;  ///< there are none
+  bool outliers = false;  ///< all landmarks have the same weight
 
   bool all() const { return sigma && repeated && outliers; }
 };
 
-/// What the options say of it for the joint solver and a clip of so many frames with one shape.
+/// Noise that the options fix when the joint solver fits a clip of `frames` frames.
 KnownNoise known_noise(const FitOptions& options, std::size_t frames);
 
-/// By the median of what the mean face leaves, which no outlier among less than half of them moves.
-/// Half of it is taken as repeated where that is not known.
+/// Estimates the noise from the median residual of the mean face, which a minority of outliers does
+/// not move. Half of the noise counts as repeated if that share is unknown.
 ClipNoise rough_noise(const std::vector<FittedFrame>& frames, const KnownNoise& known);
 
-/// Sigma, across the outline, of landmarks there, weighed as others are.
+/// Sigma of landmarks on the outline, measured across it, with weights as for other landmarks.
 double outline_noise(const std::vector<FittedFrame>& frames, const ClipNoise& noise);
 
-/// One step of expectation maximisation with the landmarks' weights of the frames. Of the repeated
-/// error the fit hides what the identities follow: `determined` is the number of them that the
-/// landmarks determine and not the prior.
+/// Performs one step of expectation maximisation with the landmark weights of the frames. The fit
+/// hides the part of the repeated error that the identities follow. `determined` is the number of
+/// identities that the landmarks determine rather than the prior.
 ///
 /// [MacKay. Bayesian interpolation. Neural Computation 4(3), 1992]
 /// [Liu, Rubin. ML estimation of the t distribution using EM and its extensions, ECM and ECME.
@@ -38,7 +38,7 @@ double outline_noise(const std::vector<FittedFrame>& frames, const ClipNoise& no
 ClipNoise estimated_noise(const std::vector<FittedFrame>& frames, double determined,
                           const KnownNoise& known);
 
-/// Sets sigma and the landmarks' weights of the frames, also those on the outline.
+/// Sets sigma and the landmark weights of the frames, including landmarks on the outline.
 void set_noise(std::vector<FittedFrame>& frames, const ClipNoise& noise, const KnownNoise& known);
 
 }  // namespace mimetra

@@ -12,11 +12,11 @@
 
 namespace mimetra {
 
-/// A face that was found in an image.
+/// Face found in an image.
 struct Face {
-  /// Its box in pixels.
+  /// Bounding box in pixels.
   double left = 0, top = 0, width = 0, height = 0;
-  /// In [0, 1): s / (1 + s) for the detector's score s, how far the face is above its threshold.
+  /// Confidence in [0, 1): s / (1 + s) for the detector's score s above its threshold.
   double confidence = 0;
   /// iBUG's 68 landmarks (68 x 2), in whole pixels.
   ImagePoints landmarks;
@@ -29,7 +29,7 @@ inline constexpr const char* kDebianFaceModel =
 struct FaceOptions {
   /// 68-point shape predictor; kDebianFaceModel by default.
   std::optional<std::filesystem::path> model = {};
-  /// Faces of less confidence are taken for none.
+  /// Lowest confidence, in [0, 1]; faces below it are ignored.
   double min_confidence = 0.1;
 
   static constexpr Option kModel{"model", &FaceOptions::model};
@@ -38,26 +38,26 @@ struct FaceOptions {
   static constexpr auto declared() { return std::tuple(kMinConfidence); }
 };
 
-/// Finds faces and their landmarks by dlib's frontal face detector and a 68-point shape predictor.
-///
-/// The constructor reads the model; queries are const.
+/// Finds faces with dlib's frontal face detector and their landmarks with a 68-point shape
+/// predictor. The constructor reads the model. Queries are const.
 ///
 /// [Kazemi, Sullivan. One Millisecond Face Alignment with an Ensemble of Regression Trees. CVPR
 /// 2014]
 class FaceFinder {
  public:
-  /// Throws IoError that says what is missing and which package has it: the model, or dlib where
-  /// mimetra was built without it; and for a file that is no such model.
+  /// Throws IoError if the model is missing, is not a shape predictor, or if mimetra was built
+  /// without dlib. The message names the package to install.
   explicit FaceFinder(const std::filesystem::path& model = kDebianFaceModel);
   ~FaceFinder();
   FaceFinder(FaceFinder&&) noexcept;
   FaceFinder& operator=(FaceFinder&&) noexcept;
 
-  /// All faces that look towards the camera and are at least 80 pixels wide, best confidence first.
+  /// Finds faces that look towards the camera and are at least 80 pixels wide, most confident
+  /// first.
   std::vector<Face> faces(const Image& image) const;
 
-  /// Those of them that are near faces found in the image before, in a tenth of the time: within
-  /// half a face's width of one, and at most a sixth larger or smaller.
+  /// Finds faces near `last`, the faces of the previous image, in a tenth of the time of faces(). A
+  /// face may move by half its width and grow or shrink by one pyramid step (6/5).
   std::vector<Face> faces_near(const Image& image, const std::vector<Face>& last) const;
 
  private:
@@ -65,12 +65,12 @@ class FaceFinder {
   std::unique_ptr<State> state_;
 };
 
-/// False where mimetra was built without dlib.
+/// Returns false if mimetra was built without dlib.
 bool faces_can_be_found();
 
-/// The faces of one frame.
+/// Faces of one frame.
 struct FacesInImage {
-  std::string image;  ///< its name
+  std::string image;  ///< name of the image
   std::vector<Face> faces;
 };
 

@@ -60,7 +60,7 @@ FaceFrame frame_of(const FacesInImage& image, const std::vector<Face>& confident
   return frame;
 }
 
-/// "3 of 120 images WHAT, the first is NAME", or nothing where none is counted.
+/// Adds "3 of 120 images WHAT, the first is NAME", or nothing if the count is 0.
 template <typename Counted>
 void add_note(std::vector<std::string>& notes, const std::vector<FaceFrame>& frames,
               const std::string& what, Counted is_counted) {
@@ -99,7 +99,7 @@ std::vector<FacesInImage> faces_of_images(const ImageSequence& images, const Fac
   return frames;
 }
 
-/// Throws IoError where no frame shows a face.
+/// Throws IoError if no frame shows a face.
 void check_some_face(const FaceTrack& track) {
   const auto is_found = [](const FaceFrame& frame) {
     return frame.outcome == FaceFrame::Outcome::found;
@@ -113,14 +113,14 @@ void check_some_face(const FaceTrack& track) {
           "; a face must look towards the camera and be at least 80 pixels wide");
 }
 
-/// Frames from one that is searched everywhere to the next, a second of most videos. Those between
-/// depend on it and not on frames before, so that such chunks are searched side by side.
+/// Frames from one full search to the next: a second of most videos. Frames of a chunk do not
+/// depend on earlier chunks, so chunks are searched in parallel.
 constexpr int kChunkFrames = 30;
 
-/// Frames wait in this many bytes at most, but always one for each thread.
+/// Memory limit for waiting frames. One frame for each thread may always wait.
 constexpr std::size_t kWaitingBytes = std::size_t{256} << 20;
 
-/// Hands frames that were read in order to those who search chunks of them.
+/// Passes frames, which are read in order, to the threads that search chunks of them.
 class WaitingFrames {
  public:
   explicit WaitingFrames(int threads) : least_(static_cast<std::size_t>(threads)) {}
@@ -136,7 +136,7 @@ class WaitingFrames {
     frames_.emplace(frame, std::move(image));
     changed_.notify_all();
   }
-  /// Waits for the frame; none where it will not come.
+  /// Waits for the frame; empty after stop().
   std::optional<Image> take(int frame) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return is_stopped_ || frames_.contains(frame); });
@@ -145,13 +145,13 @@ class WaitingFrames {
     changed_.notify_all();
     return image;
   }
-  /// Nobody waits any longer.
+  /// Ends all waiting.
   void stop() {
     const std::scoped_lock lock(mutex_);
     is_stopped_ = true;
     changed_.notify_all();
   }
-  /// The lowest chunk that nobody has begun.
+  /// Lowest chunk that no thread has begun.
   int next_chunk() {
     const std::scoped_lock lock(mutex_);
     return chunk_++;
@@ -166,7 +166,7 @@ class WaitingFrames {
   bool is_stopped_ = false;
 };
 
-/// Searches the frames of a chunk, one after the other.
+/// Searches the frames of a chunk in order.
 class ChunkSearch {
  public:
   ChunkSearch(const FaceFinder& finder, double min_confidence)
@@ -195,7 +195,7 @@ class ChunkSearch {
   std::vector<Face> last_;
 };
 
-/// All frames on the calling thread.
+/// Searches all frames on the calling thread.
 void search_here(const ImageSequence& images, const FaceFinder& finder, double min_confidence,
                  std::vector<FacesInImage>& found, const Context& context) {
   std::optional<ChunkSearch> search;
@@ -206,7 +206,7 @@ void search_here(const ImageSequence& images, const FaceFinder& finder, double m
   }
 }
 
-/// Threads that search chunks until there are none left.
+/// Threads that search chunks until none is left.
 class Searchers {
  public:
   Searchers(int count, int threads, const FaceFinder& finder, double min_confidence,
@@ -223,11 +223,11 @@ class Searchers {
       });
     }
   }
-  ~Searchers() { waiting.stop(); }  // before the threads are waited for
+  ~Searchers() { waiting.stop(); }  // before the threads are joined
   Searchers(const Searchers&) = delete;
   Searchers& operator=(const Searchers&) = delete;
 
-  /// Waits until all is searched. Throws what a search threw.
+  /// Waits until all chunks are searched. Throws what a search threw.
   void finish() {
     for (std::jthread& thread : threads_) thread.join();
     for (const std::exception_ptr& failure : failures_) {
@@ -238,7 +238,7 @@ class Searchers {
   WaitingFrames waiting;
 
  private:
-  /// False where there is no such chunk, or the search was stopped.
+  /// Returns false if there is no such chunk or the search was stopped.
   bool search_chunk(int chunk, int count, const FaceFinder& finder, double min_confidence,
                     std::vector<FacesInImage>& found) {
     const long long first = static_cast<long long>(chunk) * kChunkFrames;
@@ -256,9 +256,9 @@ class Searchers {
   std::vector<std::jthread> threads_;
 };
 
-/// The faces of each frame of a recording, which one thread reads in order while others search:
-/// near those of the frame before, and everywhere in each chunk's first frame, and where fewer are
-/// found than in the frame before. Throws as ImageSequence::image; Cancelled.
+/// Finds the faces in each frame of a recording. One thread reads the frames in order. The others
+/// search near the previous frame's faces, or everywhere at the start of a chunk and if fewer faces
+/// are found than before. Throws as ImageSequence::image; Cancelled.
 std::vector<FacesInImage> faces_of_recording(const ImageSequence& images, const FaceFinder& finder,
                                              double min_confidence, const Context& context) {
   const int count = images.frames(), chunks = (count + kChunkFrames - 1) / kChunkFrames;
@@ -341,7 +341,7 @@ FaceTrack track_face(const ImageSequence& images, const FaceOptions& options,
 
 namespace {
 
-/// A hundred megabytes, for those who draw heads only.
+/// Loads the model, a hundred megabytes, only for drawings of heads.
 class FinderOnDemand {
  public:
   explicit FinderOnDemand(std::filesystem::path model) : model_(std::move(model)) {}

@@ -6,19 +6,19 @@
 
 #include "fitting/fitted_frame.h"
 
-/// Landmarks of the jaw lie on the outline of the face as a camera sees it, not on vertices.
-/// Internal to landmark_fitter.h.
+/// Outline of a face as a camera sees it. Landmarks of the jaw are on the outline rather than at
+/// vertices. Internal to landmark_fitter.h.
 namespace mimetra {
 
-/// Finds the outline of a model: edges of its boundary, and those between a triangle whose front is
-/// seen and one whose back is. Queries are const.
+/// Finds the outline of a model: its boundary edges, and the edges between a front-facing and a
+/// back-facing triangle. Queries are const.
 class FaceOutline {
  public:
   explicit FaceOutline(const MorphableModel& model);
 
-  /// The point of the outline nearest to each of a frame's landmarks (m x 2, NaN for those not
-  /// seen, which are left out), all with weight 1; null where none is seen. `neutral`: the model's
-  /// vertices with the frame's alpha.
+  /// Matches each landmark (m x 2) of a frame to the nearest point of the outline, with weight 1.
+  /// Landmarks that are not seen (NaN) are left out; the result is null if none is seen. `neutral`
+  /// holds the model's vertices for the alpha of the frame.
   std::shared_ptr<const OutlineRows> matched(const FittedFrame& frame, const Positions& neutral,
                                              const ImagePoints& landmarks) const;
   Positions neutral(const Eigen::VectorXd& alpha) const;
@@ -26,12 +26,12 @@ class FaceOutline {
  private:
   struct Edge {
     int from = 0, to = 0;
-    std::array<int, 2> triangles = {};  ///< the second is -1 at the boundary
+    std::array<int, 2> triangles = {};  ///< second is -1 at the boundary
   };
   struct Match {
     Eigen::Index landmark = 0;
     int from = 0, to = 0;
-    double share = 0;  ///< of the way
+    double share = 0;  ///< position on the edge, from 0 at `from` to 1 at `to`
     Eigen::RowVector2d normal = Eigen::RowVector2d::Zero();
   };
 
@@ -43,12 +43,12 @@ class FaceOutline {
   std::vector<Edge> edges_;
 };
 
-/// What a clip's frames have on the outline.
+/// Landmarks of a clip's frames on the outline.
 struct ClipOutline {
   std::shared_ptr<const FaceOutline> face;
-  std::vector<ImagePoints> landmarks;  ///< of each frame
+  std::vector<ImagePoints> landmarks;  ///< m x 2 for each frame
 
-  /// Matches the frames, which have one alpha, anew.
+  /// Matches the frames again. All frames have the same alpha.
   std::vector<std::shared_ptr<const OutlineRows>> matched(
       const std::vector<FittedFrame>& frames) const;
 };

@@ -18,7 +18,7 @@
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/image.h"
 
-/// All that needs dlib, which sees an image as rows of pixels of its own.
+/// Everything that needs dlib, which sees an image as rows of its own pixels.
 namespace dlib {
 
 static_assert(sizeof(rgb_pixel) == sizeof(mimetra::Color));
@@ -68,8 +68,8 @@ Image image_of(const Pixels& pixels) {
   return image;
 }
 
-/// Walks through a stored shape predictor, which dlib would believe: what its trees and anchors
-/// refer to must be there, and counts must not exceed the file's bytes.
+/// Validates a stored shape predictor, which dlib would trust. References of trees and anchors must
+/// be valid, and counts must not exceed the bytes of the file.
 class PredictorCheck {
  public:
   PredictorCheck(std::istream& file, std::uintmax_t bytes) : file_(file), bytes_(bytes) {}
@@ -77,7 +77,7 @@ class PredictorCheck {
   void run() {
     next<int>();  // version, which dlib checks
     if (numbers() != 2 * kModelLandmarks) fail("its mean face does not have 68 landmarks");
-    std::vector<unsigned long> largest;  // feature that the trees of each cascade compare
+    std::vector<unsigned long> largest;  // largest feature that the trees of each cascade compare
     for (unsigned long left = count(); left > 0; --left) largest.push_back(largest_of_trees());
     std::vector<unsigned long> anchors;
     if (count() != largest.size()) fail("its cascades have not each their anchors");
@@ -106,14 +106,14 @@ class PredictorCheck {
     return number;
   }
 
-  /// Every entry takes a byte at least.
+  /// Reads a count, which cannot exceed the number of bytes.
   unsigned long count() {
     const auto number = next<unsigned long>();
     if (number > bytes_) fail("counts " + std::to_string(number) + " entries, more than bytes");
     return number;
   }
 
-  /// How many numbers a column holds; passes over them. Its sizes stand negated in the file.
+  /// Skips a column and returns its length. The file holds its sizes negated.
   unsigned long numbers() {
     const long rows = next<long>(), columns = next<long>();
     if (columns != -1 || rows > 0 || rows < -static_cast<long>(bytes_)) fail("an odd matrix");
@@ -121,7 +121,7 @@ class PredictorCheck {
     return static_cast<unsigned long>(-rows);
   }
 
-  /// Of a cascade's trees, each with a leaf more than it has splits.
+  /// Largest feature of a cascade's trees. Each tree has one leaf more than splits.
   unsigned long largest_of_trees() {
     unsigned long largest = 0;
     for (unsigned long trees = count(); trees > 0; --trees) {
@@ -155,7 +155,7 @@ dlib::shape_predictor read_predictor(const std::filesystem::path& model) {
     PredictorCheck(file, std::filesystem::file_size(model)).run();
     file.seekg(0);
     dlib::deserialize(predictor, file);
-  } catch (const std::exception& error) {  // a damaged count may also ask for too much memory
+  } catch (const std::exception& error) {  // damaged counts may also ask for too much memory
     throw IoError(model.string(), std::string("is no shape predictor of dlib: ") + error.what());
   }
   if (predictor.num_parts() != kModelLandmarks) {
@@ -171,7 +171,7 @@ Face face_of(const dlib::rect_detection& found, const dlib::full_object_detectio
   face.top = double(found.rect.top());
   face.width = double(found.rect.width());
   face.height = double(found.rect.height());
-  // Found faces are above the threshold; not all after they were sorted out.
+  // A face scores above the threshold, but not always after overlapping faces are sorted out.
   const double score = std::max(0.0, found.detection_confidence);
   face.confidence = score / (1 + score);
   face.landmarks.resize(kModelLandmarks, 2);
@@ -185,7 +185,7 @@ Face face_of(const dlib::rect_detection& found, const dlib::full_object_detectio
 using Detector = dlib::frontal_face_detector;
 using Detections = std::vector<dlib::rect_detection>;
 
-/// The detector for faces of one size: it does not look at smaller images of an image.
+/// Detector for faces of one size, without an image pyramid.
 Detector of_one_level(const Detector& detector) {
   Detector::image_scanner_type scanner;
   scanner.copy_configuration(detector.get_scanner());
@@ -195,7 +195,7 @@ Detector of_one_level(const Detector& detector) {
   return {scanner, detector.get_overlap_tester(), weights};
 }
 
-/// Columns or rows, from `first` to before `last`.
+/// Columns or rows from `first` to before `last`.
 struct PixelRange {
   int first = 0;
   int last = 0;
@@ -203,13 +203,12 @@ struct PixelRange {
   int size() const { return last - first; }
 };
 
-/// A rectangle of pixels.
 struct PixelArea {
   PixelRange columns;
   PixelRange rows;
 };
 
-/// A part of a level.
+/// Part of a pyramid level.
 struct PyramidPart {
   PixelArea area;
   Image pixels;
@@ -223,12 +222,12 @@ PixelRange joined(const PixelRange& a, const PixelRange& b) {
   return {std::min(a.first, b.first), std::max(a.last, b.last)};
 }
 
-/// Pixels of one level from one of its pixels to the next, measured in the level before.
+/// Step between neighbouring pixels of a level, in pixels of the level before it.
 double step_between(const PixelRange& before, const PixelRange& after) {
   return (before.last - 1) / static_cast<double>(std::max(after.last - 1, 1));
 }
 
-/// A pixel and the next one, and the share of the latter.
+/// A pixel, its successor, and the weight of the successor.
 struct Between {
   int first;
   int second;
@@ -261,21 +260,19 @@ PyramidPart part_of(const PyramidPart& all, const PixelArea& area) {
                   area.rows.first - all.area.rows.first, area.columns.size(), area.rows.size())};
 }
 
-/// The least area that holds both; an empty one holds nothing.
+/// Smallest area that contains both. Empty areas are ignored.
 PixelArea joined(const PixelArea& a, const PixelArea& b) {
   if (is_empty(a)) return b;
   if (is_empty(b)) return a;
   return {joined(a.columns, b.columns), joined(a.rows, b.rows)};
 }
 
-/// An image's pyramid, of which only parts are made, with the pixels that the whole of it has
-/// there.
-///
-/// Each level has five sixths of the columns and rows of the one before, between whose pixels it
-/// interpolates; the corners' pixels coincide.
+/// Image pyramid that computes only parts of its levels, with the same pixels as the whole. Each
+/// level has five sixths of the columns and rows of the level before it and interpolates between
+/// its pixels. The corner pixels coincide.
 class DetectorPyramid {
  public:
-  /// Levels down to `least` columns and rows; 0 is the image itself, which must outlive this.
+  /// Makes levels down to `least` columns and rows. Level 0 is the image, which must outlive this.
   DetectorPyramid(const Image& image, int least) : image_(image) {
     int width = image.width, height = image.height;
     do {
@@ -286,16 +283,16 @@ class DetectorPyramid {
   }
 
   int levels() const { return static_cast<int>(whole_.size()); }
-  /// All of a level.
+  /// Area of a whole level.
   const PixelArea& whole(int level) const { return whole_.at(static_cast<std::size_t>(level)); }
 
-  /// The pixels of `wanted`, one area for each of the first levels; empty for levels that nothing
-  /// is wanted of. \pre areas are inside their levels
+  /// Computes the pixels of the areas `wanted`, one for each of the first levels. Empty areas are
+  /// allowed. \pre areas are inside their levels
   std::vector<PyramidPart> parts(const std::vector<PixelArea>& wanted) const {
     std::vector<PyramidPart> parts;
     parts.reserve(wanted.size());
     for (const PixelArea& area : wanted) parts.push_back({area, {}});
-    // A level needs what the next one is made of.
+    // The source of each area must be computed in the level before it.
     for (int level = static_cast<int>(parts.size()) - 1; level > 0; --level) {
       const PixelArea& area = parts[static_cast<std::size_t>(level)].area;
       if (is_empty(area)) continue;
@@ -319,7 +316,7 @@ class DetectorPyramid {
   }
 
  private:
-  /// What a level's area is interpolated between, in the level before.
+  /// Pixels of the level before that an area is interpolated from.
   PixelArea source_of(int level, const PixelArea& area) const {
     const PixelArea &before = whole(level - 1), &after = whole(level);
     return {mimetra::source_of(before.columns, after.columns, area.columns),
@@ -342,7 +339,7 @@ class DetectorPyramid {
         const float upper_left = (1 - row.share) * (1 - column.share);
         const float upper_right = (1 - row.share) * column.share;
         const auto mixed = [&](std::uint8_t Color::*channel) {
-          // Cut off, not rounded: as dlib does it.
+          // Truncates as dlib does instead of rounding.
           return static_cast<std::uint8_t>(
               upper_left * float(upper[column.first - left].*channel) +
               upper_right * float(upper[column.second - left].*channel) +
@@ -359,9 +356,9 @@ class DetectorPyramid {
   std::vector<PixelArea> whole_;
 };
 
-/// Where faces of about the last one's size and place are looked for: in three levels of the
-/// pyramid, each a part around the face. Windows lie on the grid of the whole level, so that what
-/// is found is what is found there.
+/// Searches for faces near the size and place of the last one: in three levels of the pyramid, each
+/// in a part around the face. Its windows are on the grid of the whole level and give the same
+/// detections.
 class NearSearch {
  public:
   NearSearch(const Image& image, const Detector& one_level)
@@ -380,14 +377,14 @@ class NearSearch {
   }
 
  private:
-  static constexpr double kStep = 6.0 / 5;  ///< from a level's size to the one before
-  static constexpr int kWindow = 72;        ///< pixels of a found face in its level
-  static constexpr int kLeastLevel = 64;    ///< the detector makes no smaller ones
-  static constexpr int kCell = 8;           ///< pixels from window to window
-  /// Cells at a part's edge lack the gradients beyond it, and are in no window that counts.
+  static constexpr double kStep = 6.0 / 5;  ///< from one level to the level before
+  static constexpr int kWindow = 72;        ///< pixels of a face in its level
+  static constexpr int kLeastLevel = 64;    ///< the detector makes no smaller levels
+  static constexpr int kCell = 8;           ///< pixels between windows
+  /// Cells at the edge of a part lack gradients from beyond it. Their windows are dropped.
   static constexpr int kEdge = 2 * kCell;
 
-  /// Half of the face, as much for its motion, and the edge.
+  /// Half of the face, the same distance again for its motion, and the edge.
   PixelArea area_of(const Face& last, int level) const {
     const double scale = std::pow(kStep, -level);
     const double half = scale * last.width + kEdge;
@@ -422,10 +419,10 @@ class NearSearch {
   }
 
   DetectorPyramid pyramid_;
-  Detector detector_;  ///< it keeps the image's features
+  Detector detector_;  ///< the detector stores features of the image
 };
 
-/// The best of those that overlap, best first.
+/// Keeps the best of overlapping detections, best first.
 Detections best_of(Detections found, const dlib::test_box_overlap& overlap) {
   std::ranges::stable_sort(found, std::ranges::greater(),
                            &dlib::rect_detection::detection_confidence);
@@ -450,7 +447,7 @@ struct FaceFinder::State {
     return faces;
   }
 
-  dlib::shape_predictor predictor;  // what is no model is refused before detectors are made
+  dlib::shape_predictor predictor;  // first member, so a bad model fails before detectors are made
   Detector detector = dlib::get_frontal_face_detector();
   Detector one_level = of_one_level(detector);
 };
@@ -462,7 +459,7 @@ FaceFinder::FaceFinder(FaceFinder&&) noexcept = default;
 FaceFinder& FaceFinder::operator=(FaceFinder&&) noexcept = default;
 
 std::vector<Face> FaceFinder::faces(const Image& image) const {
-  Detector detector = state_->detector;  // it keeps the image's features
+  Detector detector = state_->detector;  // the detector stores features of the image
   Detections found;
   detector(image, found);
   return state_->faces(image, found);

@@ -2,7 +2,7 @@
 #include "fitting/image_codec.h"
 #include "toolkit/mesh/errors.h"
 
-/// What a build without dlib says where images are asked for.
+/// Errors of a build without dlib when images are used.
 namespace mimetra {
 
 namespace {

@@ -36,10 +36,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Contrast or saturation that stays as it is.
+/// Neutral contrast and saturation.
 constexpr int kUnchanged = 1 << 16;
 
-/// What an error's number means.
+/// Message for an error code.
 std::string ffmpeg_error(int error) {
   char text[AV_ERROR_MAX_STRING_SIZE] = {};
   ffmpeg().av_strerror(error, text, sizeof text);
@@ -50,20 +50,20 @@ double seconds(std::int64_t time, AVRational base) {
   return double(time) * base.num / base.den;
 }
 
-/// From the beginning of what a file holds.
+/// Seconds from the start of the file's contents.
 double seconds_from_start(const AVFormatContext& format, std::int64_t time, AVRational base) {
   const std::int64_t start = format.start_time == AV_NOPTS_VALUE ? 0 : format.start_time;
   return seconds(time, base) - seconds(start, {1, AV_TIME_BASE});
 }
 
-/// A name that is a file's, whatever it looks like.
+/// URL that makes FFmpeg treat any name as a file.
 std::string file_url(const fs::path& path) {
   return "file:" + path.string();
 }
 
-/// Reads no other file than this one. Throws IoError.
+/// Opens a container and reads no other file. Throws IoError.
 FfmpegOwned<AVFormatContext> open_container(const fs::path& path) {
-  // Containers of videos. Lists of other files, which FFmpeg would open, are none.
+  // Containers of videos. Playlists, which would make FFmpeg open other files, are not included.
   constexpr const char* kContainers =
       "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi,mpeg,mpegts,asf,ogg,wav";
   load_ffmpeg<IoError>(path);
@@ -85,7 +85,7 @@ FfmpegOwned<AVFormatContext> open_container(const fs::path& path) {
   return format;
 }
 
-/// The turn that a player gives the pictures of a stream.
+/// Orientation that a player applies to the pictures of a stream.
 Orientation orientation_of(const AVStream& stream) {
 #if LIBAVFORMAT_VERSION_INT >= AV_VERSION_INT(60, 15, 100)
   const AVPacketSideData* data = ffmpeg().av_packet_side_data_get(
@@ -99,13 +99,13 @@ Orientation orientation_of(const AVStream& stream) {
   if (!bytes) return {};
   std::int32_t matrix[9];
   std::memcpy(matrix, bytes, sizeof matrix);
-  // Column to column and row to row; or columns to rows. Turns between them are none of a camera.
+  // The matrix maps columns to columns, or columns to rows. Cameras do not rotate by other angles.
   const std::int64_t a = matrix[0], b = matrix[1], c = matrix[3], d = matrix[4];
   const bool transposed = std::abs(b) + std::abs(c) > std::abs(a) + std::abs(d);
   return {transposed, (transposed ? c : a) < 0, (transposed ? b : d) < 0};
 }
 
-/// The matrix of the picture's colours where the file does not say: that of its size.
+/// Colour matrix of the picture, or the usual one for its height if the file does not give one.
 int colors_of(const AVFrame& frame) {
   if (frame.colorspace != AVCOL_SPC_UNSPECIFIED && frame.colorspace != AVCOL_SPC_RGB) {
     return frame.colorspace;
@@ -129,7 +129,7 @@ class Decoder final : public VideoDecoder {
     codec_.reset(allocated(ffmpeg().avcodec_alloc_context3(decoder)));
     ffmpeg().avcodec_parameters_to_context(codec_.get(), stream_->codecpar);
     codec_->max_pixels = kMostPixels;
-    codec_->thread_count = 0;  // as many as there are; pictures do not depend on it
+    codec_->thread_count = 0;  // all cores; pictures do not depend on it
     codec_->pkt_timebase = stream_->time_base;
     const int error = ffmpeg().avcodec_open2(codec_.get(), decoder, nullptr);
     if (error < 0) throw IoError(path_.string(), "cannot be decoded: " + ffmpeg_error(error));
@@ -160,7 +160,7 @@ class Decoder final : public VideoDecoder {
     if (width * frame.height > double(kMostPixels)) fail("has too many pixels");
     Image image(static_cast<int>(width), frame.height);
     prepare_scaler(image.width);
-    // Rows of its own, because whole vectors are written at their ends.
+    // The scaler writes whole vectors past the end of a row, so it needs padded rows.
     constexpr int kAligned = 64;
     const int row = FFALIGN(3 * image.width, kAligned) + kAligned;
     rows_.resize(static_cast<std::size_t>(row) * static_cast<std::size_t>(image.height));
@@ -185,7 +185,7 @@ class Decoder final : public VideoDecoder {
     return seconds_from_start(*format_, stamp, base);
   }
 
-  /// The next packet of the stream, or its end, goes to the decoder.
+  /// Sends the next packet of the stream, or its end, to the decoder.
   void feed() {
     while (true) {
       const int error = ffmpeg().av_read_frame(format_.get(), packet_.get());
@@ -231,7 +231,7 @@ class Decoder final : public VideoDecoder {
     return time_ = time;
   }
 
-  /// Its stamp; without one it follows the last frame at the video's rate.
+  /// Time stamp of the frame. Without one, the frame follows the last one at the video's rate.
   double time_of_frame() const {
     if (frame_->best_effort_timestamp != AV_NOPTS_VALUE) {
       return time_of(frame_->best_effort_timestamp, stream_->time_base);
@@ -241,11 +241,11 @@ class Decoder final : public VideoDecoder {
     return frames_ == 0 ? 0 : time_ + double(rate.den) / rate.num;
   }
 
-  /// A file that was cut ends like any other, but before the time that its header says.
+  /// Throws IoError if the file ends before the time in its header: it was cut off.
   void check_end() const {
     const bool is_known =
         format_->duration > 0 && format_->duration_estimation_method != AVFMT_DURATION_FROM_BITRATE;
-    // The last picture's duration may be missing, and times are rounded.
+    // The duration of the last picture may be missing, and times are rounded.
     const double tolerance = std::max(0.1, frames_ > 1 ? 2 * time_ / (frames_ - 1) : 0);
     const double said = is_known ? seconds(format_->duration, {1, AV_TIME_BASE}) : 0;
     if (end_ < said - tolerance) {
@@ -276,9 +276,9 @@ class Decoder final : public VideoDecoder {
   FfmpegOwned<SwsContext> scaler_;
   std::vector<std::uint8_t> rows_;
   Orientation orientation_;
-  int frames_ = 0;  ///< that next() came to
+  int frames_ = 0;  ///< frames that next() returned
   double time_ = 0;
-  double end_ = 0;  ///< where the last packet of any stream ends
+  double end_ = 0;  ///< end of the last packet of any stream
   int width_ = 0;
   int height_ = 0;
   int pixels_ = 0;
@@ -292,7 +292,7 @@ std::unique_ptr<VideoDecoder> open_video(const fs::path& path) {
 
 namespace {
 
-/// A context for writing, whose file is closed with it.
+/// Frees a context for writing and closes its file.
 struct OutputClosed {
   void operator()(AVFormatContext* context) const {
     ffmpeg().avio_closep(&context->pb);
@@ -300,7 +300,7 @@ struct OutputClosed {
   }
 };
 
-/// The sound of a video, packet by packet, as it is stored.
+/// Sound of a video as packets, in stored form.
 class SoundSource {
  public:
   explicit SoundSource(const fs::path& path) : format_(open_container(path)) {
@@ -308,10 +308,10 @@ class SoundSource {
     packet_.reset(allocated(ffmpeg().av_packet_alloc()));
   }
 
-  /// Null where the video has none.
+  /// Null if the video has no sound.
   const AVStream* stream() const { return stream_ < 0 ? nullptr : format_->streams[stream_]; }
 
-  /// The next packet with a time; null after the last one.
+  /// Next packet with a time; null after the last one.
   AVPacket* next() {
     while (true) {
       ffmpeg().av_packet_unref(packet_.get());
@@ -319,7 +319,7 @@ class SoundSource {
       if (packet_->stream_index == stream_ && packet_->pts != AV_NOPTS_VALUE) return packet_.get();
     }
   }
-  /// Seconds from the video's beginning.
+  /// Seconds from the start of the video.
   double time() const { return seconds_from_start(*format_, packet_->pts, stream()->time_base); }
 
  private:
@@ -333,7 +333,7 @@ const AVOutputFormat* container_of(const std::string& extension) {
 }
 
 bool holds_sound(const AVOutputFormat& container, const AVStream& sound) {
-  // What a container's tables do not name it may still hold; that is not simple.
+  // A container may also hold codecs that its tables lack, but FFmpeg cannot tell.
   return ffmpeg().avformat_query_codec(&container, sound.codecpar->codec_id,
                                        FF_COMPLIANCE_NORMAL) == 1;
 }
@@ -349,7 +349,7 @@ class Encoder final : public VideoEncoder {
     check(
         ffmpeg().avformat_alloc_output_context2(&made, container, nullptr, file_url(path).c_str()));
     format_.reset(made);
-    // No times of day or random numbers: the same pictures give the same file.
+    // Without times of day and random numbers, equal pictures give equal files.
     format_->flags |= AVFMT_FLAG_BITEXACT;
     packet_.reset(allocated(ffmpeg().av_packet_alloc()));
     add_pictures();
@@ -389,7 +389,7 @@ class Encoder final : public VideoEncoder {
     if (!encoder) encoder = ffmpeg().avcodec_find_encoder(AV_CODEC_ID_MPEG4);
     if (!encoder) fail("there is no encoder of H.264 or MPEG-4; name a folder of pictures");
     codec_.reset(allocated(ffmpeg().avcodec_alloc_context3(encoder)));
-    // Pairs of pixels share a colour.
+    // 2 x 2 pixels share a colour, so width and height must be even.
     codec_->width = layout_.width + layout_.width % 2;
     codec_->height = layout_.height + layout_.height % 2;
     codec_->pix_fmt = AV_PIX_FMT_YUV420P;
@@ -397,7 +397,7 @@ class Encoder final : public VideoEncoder {
     codec_->color_primaries = AVCOL_PRI_BT709;
     codec_->color_trc = AVCOL_TRC_BT709;
     codec_->color_range = AVCOL_RANGE_MPEG;
-    // Whole numbers for the usual rates; MPEG-4 counts to 65535.
+    // These are multiples of the usual rates. MPEG-4 counts to 65535.
     codec_->time_base = {1, is_x264 ? 120000 : 60000};
     codec_->framerate = ffmpeg().av_d2q(layout_.fps, 100000);
     codec_->thread_count = 1;  // the bytes depend on it
@@ -443,7 +443,7 @@ class Encoder final : public VideoEncoder {
     source_ = std::move(source);
   }
 
-  /// What sounds before `end` and was not copied yet.
+  /// Copies sound before `end` that was not copied yet.
   void copy_sound(double end) {
     if (!source_) return;
     while (true) {
@@ -465,7 +465,7 @@ class Encoder final : public VideoEncoder {
     }
   }
 
-  /// Into frame_; what the coder needs beyond the right and lower edge repeats them.
+  /// Fills frame_. Extra pixels at the right and lower edge repeat the edge.
   void fill(const Image& image) {
     check(ffmpeg().av_frame_make_writable(frame_.get()));
     const int width = codec_->width, height = codec_->height;
@@ -485,7 +485,7 @@ class Encoder final : public VideoEncoder {
     ffmpeg().sws_scale(scaler_.get(), data, &stride, 0, height, frame_->data, frame_->linesize);
   }
 
-  /// Null for the end.
+  /// Null ends the video.
   void encode(const AVFrame* frame) {
     check(ffmpeg().avcodec_send_frame(codec_.get(), frame));
     while (true) {
@@ -509,7 +509,7 @@ class Encoder final : public VideoEncoder {
   AVStream* pictures_ = nullptr;
   AVStream* sound_ = nullptr;
   std::unique_ptr<SoundSource> source_;
-  AVPacket* waiting_ = nullptr;  ///< of the source, not copied yet
+  AVPacket* waiting_ = nullptr;  ///< packet of the source that was not copied yet
 };
 
 }  // namespace

@@ -14,13 +14,12 @@ extern "C" {
 #include <libswscale/swscale.h>
 }
 
-/// FFmpeg's functions, looked up when the first video is opened: with the codecs come a hundred
-/// libraries, for which neither other commands nor the hosts of plugins shall wait. Internal to
+/// Functions of FFmpeg, looked up when the first video is opened. The codecs bring a hundred
+/// libraries, so other commands and the hosts of plugins do not wait for them. Internal to
 /// video_codec.h.
 namespace mimetra {
 
-/// A shared library that stays loaded. Where it or a function is missing, std::runtime_error says
-/// so.
+/// Shared library that stays loaded. Throws std::runtime_error if it or a function is missing.
 class SharedLibrary {
  public:
   explicit SharedLibrary(const std::string& name);
@@ -36,7 +35,7 @@ class SharedLibrary {
   void* handle_;
 };
 
-/// The versions are those of the headers; for another one a structure may look otherwise.
+/// Libraries of the same major versions as the headers, since the structs of others may differ.
 struct Ffmpeg {
   SharedLibrary util{"libavutil.so." AV_STRINGIFY(LIBAVUTIL_VERSION_MAJOR)};
   SharedLibrary codec{"libavcodec.so." AV_STRINGIFY(LIBAVCODEC_VERSION_MAJOR)};
@@ -101,11 +100,11 @@ struct Ffmpeg {
 #undef MIMETRA_OF
 };
 
-/// Loads them at the first call. \pre load_ffmpeg() came before, which says what is missing.
+/// Loads FFmpeg at the first call. \pre load_ffmpeg() returned; it reports missing libraries.
 const Ffmpeg& ffmpeg();
 
-/// Throws the Error, of the file, where FFmpeg's libraries are not installed. Afterwards they are
-/// loaded, and only what they return tells of errors.
+/// Throws `Error` for `file` if FFmpeg's libraries are not installed. Afterwards they are loaded,
+/// and FFmpeg reports errors only through return values.
 template <typename Error>
 void load_ffmpeg(const std::filesystem::path& file) {
   try {

@@ -19,7 +19,7 @@ namespace mimetra {
 
 namespace {
 
-/// In pixels, of the first image; none where it cannot be read.
+/// Longer side of the first image in pixels; empty if it cannot be read.
 std::optional<int> longer_side(const ImageSequence& images) {
   try {
     const Image image = images.image(0);
@@ -69,7 +69,7 @@ TurnUncertainty::TurnUncertainty(const MorphableModel& model, const std::vector<
                                  const Eigen::Matrix3d& ahead) {
   const auto count = static_cast<Eigen::Index>(vertices.size());
   const Eigen::MatrixXd& expressions = model.expressions().displacements;
-  // Turn, place, size and stretch of the face in the image, as in the camera's model.
+  // Rotation, position, size and stretch of the face in the image, as in the camera model.
   constexpr Eigen::Index kCamera = 8;
   image_.setZero(2 * count, kCamera + expressions.cols());
   Positions points = model.mean()(vertices, Eigen::all) * ahead.transpose();
@@ -91,8 +91,8 @@ TurnUncertainty::TurnUncertainty(const MorphableModel& model, const std::vector<
     rows.rightCols(expressions.cols()) = (ahead * moves / radius).topRows<2>();
   }
   image_ /= kUsualSigma;
-  // A turn of a radian, a place and a size of a radius are as much as may be; weights of
-  // expressions spread evenly between 0 and 1.
+  // Standard deviations are a radian of rotation, and a radius for position and size. Expression
+  // weights are uniform between 0 and 1.
   const double stretch = FitOptions{}.stretch;
   prior_.setOnes(image_.cols());
   prior_.segment<2>(6).setConstant(1 / (stretch * stretch));
@@ -112,12 +112,12 @@ double TurnUncertainty::of(const std::vector<Eigen::Index>& seen) const {
 }
 
 std::vector<int> partial_frames(const MorphableModel& model, const MappedLandmarks& mapped) {
-  // Half a face has 2.4 to 3.5, brows and eyes 3.3; nose and mouth together 3 to 4.4, the nose
-  // alone 5 to 7, the mouth 6 to 13.
+  // Half a face has 2.4 to 3.5 degrees, brows and eyes 3.3, nose and mouth together 3 to 4.4. The
+  // nose alone has 5 to 7, the mouth alone 6 to 13.
   constexpr double kMost = 4;
   const TurnUncertainty uncertainty(model, mapped.vertices,
                                     looking_ahead(model.mean(), mapped.ibug));
-  std::map<std::vector<Eigen::Index>, double> known;  // mostly the same ones in many frames
+  std::map<std::vector<Eigen::Index>, double> known;  // many frames see the same landmarks
   std::vector<int> partial;
   std::size_t whole = 0;
   for (int f = 0; f < mapped.points.rows(); ++f) {

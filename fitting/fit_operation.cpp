@@ -36,14 +36,14 @@ struct FitCall {
 
   FitOptions fit = {};
   HeadTurns head_motion = HeadTurns::drop;
-  /// Vertex of each landmark; by default the file in the model's folder.
+  /// Vertex of each landmark; defaults to a file in the model's folder.
   std::optional<std::filesystem::path> mapping = {};
 
   static constexpr Option kMapping{"mapping", &FitCall::mapping};
   static constexpr Option kHeadMotion{"head_motion", &FitCall::head_motion};
 };
 
-/// As people choose it.
+/// Name of the choice on the command line.
 constexpr std::string_view choice_name(FitCall::HeadTurns value) {
   switch (value) {
     case FitCall::HeadTurns::drop:
@@ -96,7 +96,7 @@ BoundParameters<FitCall> fit_parameters() {
       .add(&FitCall::fit, fit);
 }
 
-/// Throws UsageError for options that contradict each other.
+/// Throws UsageError if options contradict each other.
 void check_fit(const FitOptions& options) {
   using Camera = FitOptions::Camera;
   if ((options.camera == Camera::perspective) != options.focal_length.has_value()) {
@@ -151,7 +151,7 @@ FittedCoefficients coefficients_of(const MorphableModel& model, const Eigen::Vec
   return fit;
 }
 
-/// The fitted face without its camera; its rest pose is the person's neutral.
+/// Fitted face without its camera. Its rest pose is the person's neutral.
 MeshSequence sequence_of(const MorphableModel& model, const FittedCoefficients& fit,
                          FitOptions::Shape shape) {
   const BlendshapeModel person = model.person(fit.identity());
@@ -165,8 +165,8 @@ MeshSequence sequence_of(const MorphableModel& model, const FittedCoefficients& 
 }
 
 struct FitSummary {
-  double rms = 0;  ///< over all landmarks of all frames, pixels
-  int worst = 0;   ///< frame of the largest RMS
+  double rms = 0;  ///< over all landmarks of all frames, in pixels
+  int worst = 0;   ///< frame with the largest RMS
   int iterations = 0;
   std::vector<int> unseen;
 };
@@ -189,7 +189,7 @@ FitSummary summary_of(const FittedCoefficients& fit) {
   return summary;
 }
 
-/// Calls what may find that the landmarks contradict the model, and names them then.
+/// Calls a function and prefixes the landmarks' name to its MismatchError.
 template <typename Call>
 auto naming_landmarks(const Invocation& invocation, Call call) {
   try {
@@ -199,7 +199,7 @@ auto naming_landmarks(const Invocation& invocation, Call call) {
   }
 }
 
-/// Before anything is computed: pictures need what they are drawn on, and that it is sound.
+/// Checks early that outputs with pictures have readable images to draw on.
 void check_images(const Invocation& invocation) {
   const NamedData& landmarks = invocation.input("landmarks");
   for (const char* output : {"overlay", "strip"}) {
@@ -212,7 +212,7 @@ void check_images(const Invocation& invocation) {
   }
 }
 
-/// The partial_frames(), whose landmarks are taken as not seen, with a warning.
+/// Removes the landmarks of partial_frames() from `mapped`, with a warning, and returns the frames.
 std::vector<int> without_partial_frames(const Invocation& invocation, const MorphableModel& model,
                                         MappedLandmarks& mapped) {
   const std::vector<int> partial = partial_frames(model, mapped);
@@ -232,7 +232,7 @@ std::vector<int> without_partial_frames(const Invocation& invocation, const Morp
   return partial;
 }
 
-/// Heads of which most are turned this far are rather those of a model in other axes.
+/// Warns if most heads are turned far: then the model probably has other axes.
 void warn_of_axes(const std::vector<AffineCamera>& cameras, const Invocation& invocation) {
   constexpr double kFar = EIGEN_PI / 3;
   const auto is_far = [](const AffineCamera& camera) {
@@ -413,8 +413,8 @@ void add_landmark_formats(OperationTable& table) {
   add("folder of images or of .pts files", {Format::kFolder});
 }
 
-/// The sequence, and the person whose expressions are copied; with one identity for all frames also
-/// the joint solver's system of each.
+/// Memory of the sequence and of the person with its copied expressions. One identity for all
+/// frames adds the joint solver's system of each frame.
 double memory(const Invocation& invocation) {
   const double frames = invocation.get<LandmarkTrack>("landmarks").frames();
   const MorphableModel& model = invocation.get<ModelData>("model").model;

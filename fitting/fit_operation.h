@@ -4,8 +4,7 @@
 
 namespace mimetra {
 
-/// The operation `fit`, the reader of landmarks that it needs, and with dlib the finder of
-/// landmarks in drawings.
+/// Adds the operation `fit`, its formats and, with dlib, the finder of landmarks in drawings.
 void add_fitting(OperationTable& table);
 
 }  // namespace mimetra

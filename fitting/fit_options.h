@@ -7,57 +7,56 @@
 
 namespace mimetra {
 
-/// Standard deviation of landmarks in each direction where it is not estimated, as a share of their
-/// RMS distance from their centroid: sqrt(3) px for the face of the size it was found on.
+/// Standard deviation of landmarks in each direction if it is not estimated, as a share of their
+/// RMS distance from their centroid. It is sqrt(3) px for a face of the size it was measured on.
 constexpr double kUsualSigma = 0.017485;
 
 struct FitOptions {
-  /// `alternating`: camera, alpha, camera, beta, in turn, as in the paper. `joint`: Gauss-Newton
-  /// steps of all of them together, two or three of which reach what hundreds of iterations do.
+  /// `alternating` solves camera, alpha, camera and beta in turn, as in the paper. `joint` takes
+  /// Gauss-Newton steps in all of them: two or three steps replace hundreds of alternations.
   enum class Solver { joint, alternating };
-  /// `clip`: one alpha for all frames; `frame`: an alpha in every frame, which starts from the
-  /// frame before.
+  /// `clip` fits one alpha to all frames. `frame` fits an alpha to every frame, which starts from
+  /// the previous frame.
   enum class Shape { clip, frame };
   /// `affine`: eight free numbers in each frame, as in the paper. `orthographic`: scaled
-  /// orthographic, an affine camera whose rows may differ in length and be askew by `stretch`.
-  /// `perspective`: the same, and what is farther away is smaller by the focal length.
-  /// `automatic`: orthographic where the joint solver fits one shape to several frames, else
-  /// affine.
+  /// orthographic; `stretch` limits how far its rows may differ in length and be askew.
+  /// `perspective`: like `orthographic`, but things shrink with distance, by the focal length.
+  /// `automatic`: orthographic if the joint solver fits one shape to several frames, else affine.
   enum class Camera { automatic, orthographic, affine, perspective };
-  /// `resist`: landmarks that are not like the others, in units of the clip's own noise, count
-  /// little; `trust`: all count alike. `automatic`: resist where the noise is estimated.
+  /// `resist` gives little weight to landmarks that are outliers, in units of the clip's noise.
+  /// `trust` weights all landmarks alike. `automatic` resists if the noise is estimated.
   enum class Outliers { automatic, resist, trust };
 
   Solver solver = Solver::joint;
   Shape shape = Shape::clip;
-  /// Iterations at most; in every frame where each has its shape.
+  /// Maximum number of iterations after the noise is estimated, in each frame if shapes differ.
   int iterations = 5;
-  /// It ends where the energy falls by less than this share of it in one iteration.
+  /// The solver stops when one iteration lowers the energy by less than this share, in [0, 1].
   double tolerance = 1e-4;
-  /// Noise of the landmarks, a standard deviation in each direction. By default the joint solver
-  /// estimates it where it fits one shape to several frames, as a share of the face's size in each;
-  /// elsewhere it is kUsualSigma x the RMS distance of the used landmarks from their centroid, in
-  /// each frame, so that the image's scale changes nothing.
+  /// Standard deviation of the landmarks in each direction, in pixels. By default the joint solver
+  /// estimates it for one shape in several frames, unless `repeated` is 0. The estimate is a share
+  /// of the face's size in each frame. Otherwise it is kUsualSigma x the RMS distance of the used
+  /// landmarks from their centroid, in each frame; the scale of the image does not matter.
   std::optional<double> sigma = std::nullopt;
-  /// rho, the share of the landmarks' squared error that is the same in every frame: F frames of
-  /// one shape say as much of it as F / (1 + (F - 1) rho). 0 where frames are independent;
-  /// estimated by default where sigma is, else 0.
+  /// rho in [0, 1], the share of the landmarks' squared error that is the same in every frame. F
+  /// frames of one shape count as F / (1 + (F - 1) rho) independent frames: rho is 0 if frames are
+  /// independent. It is estimated by default if sigma is, and is 0 otherwise.
   std::optional<double> repeated = std::nullopt;
   Camera camera = Camera::automatic;
-  /// Standard deviation of a scaled orthographic camera's stretch: the difference of its rows'
+  /// Standard deviation of the stretch of a scaled orthographic camera: the difference of its rows'
   /// lengths, and their product, as shares of the length. A face at ten times its depth from the
   /// camera needs 0.1.
   double stretch = 0.1;
-  /// Of a perspective camera.
+  /// Focal length of a perspective camera, in pixels.
   std::optional<double> focal_length = std::nullopt;
   Outliers outliers = Outliers::automatic;
-  /// Upper bound of each beta, > 0. Without a bound, beta is only at least 0.
+  /// Upper bound of each beta, > 0. Without it, beta is only bounded by 0 from below.
   std::optional<double> max_expression = 1;
-  /// Weight of |beta|^2 beside |alpha|^2. By default 0.125 for each expression beyond ten, so that
-  /// fifty are as strong as in real performances.
+  /// Weight of |beta|^2 relative to |alpha|^2. The default of 0.125 for each expression beyond ten
+  /// makes fifty expressions as strong as in real performances.
   std::optional<double> ridge = std::nullopt;
-  /// Time constant that is the weight of squared second differences of beta over time. The
-  /// alternation finds it, from where the solver ends without it. Needs max_expression = 1.
+  /// Time constant of smooth expressions, in seconds; see smoothness_penalty(). Smoothing starts
+  /// from the solver's result without it. Needs max_expression = 1.
   double smoothness = 0;
 
   static constexpr Option kSolver{"solver", &FitOptions::solver};
@@ -87,7 +86,7 @@ struct FitOptions {
   }
 };
 
-/// As people choose it.
+/// Name of the choice on the command line.
 constexpr std::string_view choice_name(FitOptions::Solver value) {
   switch (value) {
     case FitOptions::Solver::joint:
@@ -98,7 +97,7 @@ constexpr std::string_view choice_name(FitOptions::Solver value) {
   return {};
 }
 
-/// As people choose it.
+/// Name of the choice on the command line.
 constexpr std::string_view choice_name(FitOptions::Shape value) {
   switch (value) {
     case FitOptions::Shape::clip:
@@ -109,7 +108,7 @@ constexpr std::string_view choice_name(FitOptions::Shape value) {
   return {};
 }
 
-/// As people choose it.
+/// Name of the choice on the command line.
 constexpr std::string_view choice_name(FitOptions::Camera value) {
   switch (value) {
     case FitOptions::Camera::automatic:
@@ -124,7 +123,7 @@ constexpr std::string_view choice_name(FitOptions::Camera value) {
   return {};
 }
 
-/// As people choose it.
+/// Name of the choice on the command line.
 constexpr std::string_view choice_name(FitOptions::Outliers value) {
   switch (value) {
     case FitOptions::Outliers::automatic:

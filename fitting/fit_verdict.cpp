@@ -19,8 +19,8 @@
 namespace mimetra {
 
 bool IdentityVerdict::is_doubtful() const {
-  constexpr double kLargest = 3.5;  // one of 34 people with 63 identities has a larger one
-  // Slivers of a model turn over in people that it is made of, up to 6 of 13120 in twenty of them.
+  constexpr double kLargest = 3.5;  // one of 34 people with 63 identities exceeds it
+  // Slivers of a model flip even for people that it was made from: up to 6 of 13120, in 20 people.
   constexpr double kMostFlipped = 1e-3;
   return alpha_max > kLargest || flipped > kMostFlipped * triangles;
 }
@@ -116,7 +116,7 @@ std::vector<AffineCamera> cameras_at_origin(const FittedCoefficients& fit) {
 int averted_landmarks(const Positions& mesh, const Triangles& triangles,
                       const std::vector<int>& vertices, const AffineCamera& camera) {
   const Eigen::RowVector3d x = camera.row(0).head<3>(), y = camera.row(1).head<3>();
-  const Eigen::RowVector3d away = x.cross(y);  // y is down in the image
+  const Eigen::RowVector3d away = x.cross(y);  // y points down in the image
   const Positions normals = triangle_normals(mesh, triangles);
   Eigen::VectorXd facing = Eigen::VectorXd::Zero(mesh.rows());
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
@@ -216,7 +216,7 @@ std::string Judgement::words() const {
 
 namespace {
 
-/// The landmarks that are farthest off, with their distance.
+/// Landmarks with the largest distances.
 std::string farthest(const Eigen::VectorXd& distances, const MappedLandmarks& mapped) {
   constexpr std::size_t kNamed = 4;
   std::vector<std::size_t> order(mapped.names.size());
@@ -284,7 +284,7 @@ void warn_of_people(const ClipPeople& people, const Invocation& invocation) {
   }
 }
 
-/// What may make a person of it.
+/// Options that may make the identity plausible.
 std::string advice(const FitOptions& options, bool is_clip) {
   using Camera = FitOptions::Camera;
   const bool is_affine =

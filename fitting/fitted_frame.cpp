@@ -100,15 +100,15 @@ namespace {
 
 using CameraVector = Eigen::Vector<double, 8>;
 
-/// How far the rows a and b of a camera are from those of a scaled orthographic one, as shares of
-/// their length: (|a|^2 - |b|^2) / (|a|^2 + |b|^2) and 2 a.b / (|a|^2 + |b|^2).
+/// Deviation of the rows a and b of a camera from a scaled orthographic one, as shares of their
+/// length: (|a|^2 - |b|^2) / (|a|^2 + |b|^2) and 2 a.b / (|a|^2 + |b|^2).
 Eigen::Vector2d stretch_of(const AffineCamera& camera) {
   const auto a = camera.row(0).head<3>(), b = camera.row(1).head<3>();
   const double sum = a.squaredNorm() + b.squaredNorm();
   return Eigen::Vector2d(a.squaredNorm() - b.squaredNorm(), 2 * a.dot(b)) / sum;
 }
 
-/// Its derivative by the camera's eight numbers.
+/// Derivative of stretch_of() by the eight numbers of the camera.
 Eigen::Matrix<double, 2, 8> stretch_derivative(const AffineCamera& camera) {
   const auto a = camera.row(0).head<3>(), b = camera.row(1).head<3>();
   const double sum = a.squaredNorm() + b.squaredNorm();
@@ -121,8 +121,7 @@ Eigen::Matrix<double, 2, 8> stretch_derivative(const AffineCamera& camera) {
   return derivative;
 }
 
-/// The camera with the nearest rows of one length at right angles, which sees `centre` at the same
-/// place.
+/// Nearest camera with orthogonal rows of equal length that projects `centre` to the same place.
 AffineCamera without_stretch(const AffineCamera& camera, const Eigen::Vector3d& centre) {
   const Eigen::Matrix<double, 2, 3> C = camera.leftCols<3>();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(C, Eigen::ComputeThinU | Eigen::ComputeThinV);
@@ -132,7 +131,7 @@ AffineCamera without_stretch(const AffineCamera& camera, const Eigen::Vector3d& 
   return result;
 }
 
-/// Per pixel of the model's unit: what a camera makes larger.
+/// Pixels per unit of the model.
 double scale_of(const AffineCamera& camera) {
   return std::sqrt(camera.leftCols<3>().squaredNorm() / 2);
 }
@@ -173,7 +172,7 @@ Eigen::RowVector4d FittedFrame::depth_row() const {
 }
 
 Eigen::VectorXd FittedFrame::shrinking(const ModelPoints& points) const {
-  // Behind the camera there is nothing to see: a face is at least half its distance away.
+  // Points behind the camera are not visible: a face is at least half its distance away.
   constexpr double kNearest = 0.5;
   const Eigen::Vector3d away = depth_row().head<3>();
   return (1 + (points * away).array()).max(kNearest).inverse();

@@ -13,22 +13,22 @@ namespace {
 
 using Faces = std::vector<FaceBox>;
 
-/// From where a face was to another one's middle, in sizes of it.
+/// Distance from the middle of one face to another, in sizes of the first.
 double distance(const FaceBox& from, const FaceBox& to) {
-  constexpr double kThinnest = 0.3;  // a box that is thinner holds a part of a face
+  constexpr double kThinnest = 0.3;  // thinner boxes hold a part of a face
   const Eigen::Array2d size = from.size.max(kThinnest * from.size.maxCoeff());
   return ((to.middle - from.middle) / size).matrix().norm();
 }
 
-/// Where a face was last seen, and in which of the frames with faces.
+/// Face last seen at a place, and the number of its frame among the frames with faces.
 struct Place {
   FaceBox face;
   int frame;
 };
 
-/// The places of a frame's faces among those that are known, or new ones.
+/// Assigns known places or new ones to the faces of a frame.
 std::vector<int> places_of(const Faces& faces, int frame, std::vector<Place>& known) {
-  // Detectors find a face twice: one that lies on another is the same one.
+  // A detector may find a face twice; boxes that overlap this much are one face.
   constexpr double kOnAnother = 0.5;
   std::vector<std::tuple<bool, double, int, int>> pairs;  // was left, distance, place, face
   for (std::size_t place = 0; place < known.size(); ++place) {
@@ -56,13 +56,13 @@ std::vector<int> places_of(const Faces& faces, int frame, std::vector<Place>& kn
       known.emplace_back();
     }
   }
-  for (std::size_t face = faces.size(); face-- > 0;) {  // of two on each other the first
+  for (std::size_t face = faces.size(); face-- > 0;) {  // keeps the first of two on each other
     known[static_cast<std::size_t>(places[face])] = {faces[face], frame};
   }
   return places;
 }
 
-/// Pairs of places with faces in one frame, both ways.
+/// Pairs of places with faces in one frame, in both orders.
 std::set<std::pair<int, int>> places_together(const std::vector<std::vector<int>>& places) {
   std::set<std::pair<int, int>> together;
   for (const std::vector<int>& own : places) {
@@ -108,7 +108,7 @@ FollowedFace followed_face(const std::vector<Faces>& frames) {
   }
   const std::vector<std::vector<int>> places = face_places(frames);
   const std::set<std::pair<int, int>> together = places_together(places);
-  std::set<int> person;  // places of the followed one
+  std::set<int> person;  // places of the followed person
   const auto is_person = [&](int place) { return person.contains(place); };
   const auto is_another = [&](int place) {
     return std::ranges::any_of(person, [&](int own) { return together.contains({own, place}); });
@@ -119,7 +119,7 @@ FollowedFace followed_face(const std::vector<Faces>& frames) {
     const Faces& faces = frames[f];
     const std::vector<int>& own = places[f];
     int chosen = -1;
-    // How much better a face is: one of a known place before others, then the nearest.
+    // A face at a known place comes before others, then the nearest face.
     const auto merit = [&](std::size_t face) {
       return person.empty() ? std::pair(false, faces[face].size.matrix().norm())
                             : std::pair(is_person(own[face]), -distance(last, faces[face]));

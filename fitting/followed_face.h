@@ -8,33 +8,33 @@
 
 namespace mimetra {
 
-/// The box around a face in an image.
+/// Box around a face in an image.
 struct FaceBox {
   Eigen::Array2d middle;  ///< x, y
   Eigen::Array2d size;    ///< width, height
 };
 
-/// Around points (n x 2); those that are NaN do not count. \pre some are not
+/// Box around points (n x 2), ignoring points with NaN. \pre at least one point is finite
 FaceBox box_around(const ImagePoints& points);
 
-/// The place of each face in each frame of a clip, by numbers from 0 on. A face whose middle is
-/// within the width and height of where one was last seen, however long ago, is at its place: those
-/// of the frame before come first, then the nearest, each once in a frame. A face that lies on
-/// another one is at its place, too; others are at new ones.
+/// Place of each face in each frame, numbered from 0. A face belongs to a known place if its middle
+/// is within one face size of the last face there, however long ago. Places of the previous frame
+/// win over others, then the nearest wins; a frame uses each place once. A face on top of another
+/// one shares its place. All other faces get new places.
 std::vector<std::vector<int>> face_places(const std::vector<std::vector<FaceBox>>& frames);
 
-/// Which of the faces in each frame of a clip is the person that is followed.
+/// Index of the followed person's face in each frame of a clip.
 struct FollowedFace {
-  std::vector<int> chosen;  ///< in each frame (F); -1 where the person is not seen
-  /// Frames in which another face is taken for the person, which lay elsewhere, as after a cut.
+  std::vector<int> chosen;  ///< in each frame (F); -1 if the person is not seen
+  /// Frames in which a face at another place is chosen as the person's, as after a cut.
   std::vector<int> jumps;
 };
 
-/// Follows one person. Where no frame has several faces, each one is the person's. Else the person
-/// is the largest face of the first frame that has any, of equal ones the first, and what is at its
-/// place (face_places()). Two faces in one frame are two people: where the person's face is
-/// missing, the nearest one whose place is in no frame beside the person's is taken for it, as when
-/// the picture is cut or the camera moves, and no other.
+/// Follows one person. If no frame has several faces, every face is the person's. Otherwise the
+/// person is the largest face (the first of equals) in the first frame with a face, and every face
+/// at its place (face_places()). If that face is missing in a frame, the nearest other face is
+/// chosen, as after a cut. It must be at a place that never occurs in one frame with the person,
+/// since two faces in one frame are two people.
 FollowedFace followed_face(const std::vector<std::vector<FaceBox>>& frames);
 
 }  // namespace mimetra

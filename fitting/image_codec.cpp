@@ -27,7 +27,7 @@ namespace {
 constexpr std::string_view kPngStart = "\x89PNG\r\n\x1a\n";
 constexpr std::string_view kJpegStart = "\xff\xd8";
 
-/// Big-endian numbers of a file, checked against its end.
+/// Reads big-endian numbers of a file up to its end.
 class ByteReader {
  public:
   ByteReader(const std::string& name, std::string_view bytes) : name_(name), bytes_(bytes) {}
@@ -62,9 +62,10 @@ class ByteReader {
   std::size_t at_ = 0;
 };
 
-/// A list of chunks: length, type, content, checksum. The decoder checks the content.
+/// Follows the chunks: length, type, content, checksum. The decoder checks the content.
 ImageHeader png_header(const std::string& name, ByteReader bytes) {
-  bytes.skip(kPngStart.size() + 8);  // and the length and type of the first chunk, the header
+  bytes.skip(kPngStart.size() +
+             8);  // signature, and length and type of the first chunk, the header
   ImageHeader header{.is_png = true, .width = bytes.number(4), .height = bytes.number(4)};
   const int bits = bytes.byte();
   if (bits > 8) {
@@ -72,7 +73,7 @@ ImageHeader png_header(const std::string& name, ByteReader bytes) {
                             " bits a channel, expected 8; convert it, as with 'ffmpeg -i IN "
                             "-pix_fmt rgb24 OUT.png'");
   }
-  bytes.skip(4 + 4);  // the rest of the header's content, and its checksum
+  bytes.skip(4 + 4);  // rest of the header's content, and its checksum
   while (true) {
     const std::uint32_t length = bytes.number(4);
     const bool last = bytes.text(4) == "IEND";
@@ -90,8 +91,7 @@ bool is_frame_header(std::uint8_t marker) {
   return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
 }
 
-/// The next marker; what lies before it are compressed pixels, in which 0xff 0x00 is a pixel's
-/// byte.
+/// Next marker. Skips compressed pixels, which contain 0xff 0x00 for the byte 0xff.
 std::uint8_t next_marker(ByteReader& bytes) {
   while (true) {
     while (bytes.byte() != 0xff) continue;
@@ -101,7 +101,7 @@ std::uint8_t next_marker(ByteReader& bytes) {
   }
 }
 
-/// The turns that Exif numbers from 1 to 8.
+/// Orientation for Exif's numbers 1 to 8.
 Orientation exif_orientation(unsigned number) {
   switch (number) {
     case 2:
@@ -123,7 +123,7 @@ Orientation exif_orientation(unsigned number) {
   }
 }
 
-/// What the orientation's entry in the first list of Exif data says; damaged data say nothing.
+/// Orientation in the first list of Exif data, or the default if the data is damaged.
 ///
 /// [CIPA DC-008, Exchangeable image file format for digital still cameras, 2.3], 4.5 and 4.6.4
 Orientation orientation_of_exif(std::string_view data) {
@@ -151,7 +151,7 @@ Orientation orientation_of_exif(std::string_view data) {
   return {};
 }
 
-/// The decoder fills what is missing with grey: the end has to be looked for.
+/// Follows the segments to the end, because the decoder fills missing pixels with grey.
 ImageHeader jpeg_header(const std::string& name, ByteReader bytes) {
   constexpr std::uint8_t kEnd = 0xd9, kExif = 0xe1;
   ImageHeader header;
@@ -168,7 +168,7 @@ ImageHeader jpeg_header(const std::string& name, ByteReader bytes) {
       if (data.starts_with("Exif")) header.orientation = orientation_of_exif(data);
     }
     if (is_frame_header(marker)) {
-      // The decoder takes the first one, whose pixels the limit must hold for.
+      // The decoder uses the first frame header, so the limit on pixels must apply to it.
       if (header.width != 0 || header.height != 0) {
         throw IoError(name, "holds two frame headers, expected one; save the image again");
       }

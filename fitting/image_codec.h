@@ -5,14 +5,14 @@
 
 #include "toolkit/operations/image.h"
 
-/// Bytes of image files to pixels, where dlib is there. Internal to image_files.h.
+/// Decoding of image files, with dlib if it is available. Internal to image_files.h.
 namespace mimetra {
 
-/// 800 MB of pixels: an image or a video's frame with more comes from a damaged header.
+/// Limit of 800 MB of pixels. An image or video frame beyond it has a damaged header.
 constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 28;
 
-/// How stored pixels lie in the picture that is meant: columns and rows change places first, then
-/// the order of the columns, and of the rows, is turned round.
+/// Orientation of the stored pixels. To get the picture, swap columns and rows, then reverse the
+/// order of columns, then of rows.
 struct Orientation {
   bool transposed = false;
   bool right_to_left = false;
@@ -20,26 +20,25 @@ struct Orientation {
   bool operator==(const Orientation&) const = default;
 };
 
-/// The picture that is meant.
+/// Applies the orientation to the stored pixels.
 Image oriented(Image stored, const Orientation& orientation);
 
-/// What an image file says about itself.
+/// Header of an image file.
 struct ImageHeader {
-  bool is_png = false;  ///< JPEG otherwise
+  bool is_png = false;  ///< otherwise JPEG
   unsigned width = 0;
   unsigned height = 0;
-  Orientation orientation = {};  ///< of the camera, which JPEGs of phones hold
+  Orientation orientation = {};  ///< from Exif data, as phones write it
 };
 
-/// Reads the header, and follows the file's parts to the end. Throws IoError where the type is
-/// neither PNG nor JPEG, the file is truncated, or it holds more than can be handled. `name` is for
-/// messages.
+/// Reads the header and follows the parts of the file to its end. `name` is for messages. Throws
+/// IoError if the file is neither PNG nor JPEG, is truncated, or exceeds kMostPixels.
 ImageHeader checked_image_header(const std::string& name, const std::string& bytes);
 
-/// Throws IoError that says which packages are missing, where mimetra was built without dlib.
+/// Throws IoError that names the missing packages if mimetra was built without dlib.
 void require_dlib(const std::string& name);
 
-/// `bytes` are whole. Throws IoError.
+/// Decodes an image. Throws IoError. \pre `bytes` passed checked_image_header()
 Image decoded_image(const std::string& name, const std::string& bytes, const ImageHeader& header);
 
 }  // namespace mimetra

@@ -52,7 +52,7 @@ Color mean_color(const Image& image, const Span& columns, const Span& rows) {
   return {mean(red), mean(green), mean(blue)};
 }
 
-/// Copies `source` into `target`, its left upper corner at column `left` of the first row.
+/// Copies `source` into `target`, with its upper left corner at column `left` of the first row.
 void paste(const Image& source, int left, Image& target) {
   for (int y = 0; y < source.height; ++y) {
     std::copy_n(&source.at(0, y), source.width, &target.at(left, y));

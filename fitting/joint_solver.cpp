@@ -16,12 +16,12 @@ namespace mimetra {
 
 namespace {
 
-/// Part of the mean diagonal that is added to what expressions see of a frame, so that one which
-/// moves the landmarks as a camera does can be factored too. It bends the step, not the energy.
+/// Share of the mean diagonal added to a frame's system of expressions. It can then be factored
+/// even if an expression moves the landmarks as a camera does. It changes the step, not the energy.
 constexpr double kLift = 1e-12;
 
-/// The quadratic model of a frame's energy in alpha and beta, its camera eliminated and the prior
-/// on alpha left out: x^T N x - 2 h^T x for x = (alpha, beta).
+/// Quadratic model of a frame's energy in x = (alpha, beta): x^T N x - 2 h^T x. The camera is
+/// eliminated, and the prior on alpha is left out.
 struct FrameSystem {
   Eigen::MatrixXd N_aa, N_ba, N_bb;
   Eigen::VectorXd h_a, h_b;
@@ -29,9 +29,9 @@ struct FrameSystem {
 
 FrameSystem frame_system(const FittedFrame& frame, double ridge) {
   const Eigen::Index a = frame.alpha().size(), b = frame.beta().size();
-  if (a + b == 0) return {};  // the camera alone is unknown
+  if (a + b == 0) return {};  // only the camera is unknown
   const FittedFrame::Linear linear = frame.linear();
-  // What a change of the camera undoes: the projection on the span of what that moves.
+  // Projects out the directions that a change of the camera can undo.
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(linear.camera);
   Eigen::MatrixXd Q = Eigen::MatrixXd::Identity(linear.camera.rows(), linear.camera.cols());
   Q.applyOnTheLeft(qr.householderQ());
@@ -51,12 +51,12 @@ FrameSystem frame_system(const FittedFrame& frame, double ridge) {
   return system;
 }
 
-/// Minimises the sum of the frames' quadratic models plus prior |alpha|^2 over alpha and beta in
-/// its box. The minimum over beta is a convex, piecewise quadratic function of alpha; this is
-/// Newton's method on that, halved where it goes up.
+/// Minimises the sum of the frames' quadratic models plus prior |alpha|^2 over alpha and the
+/// box-constrained betas. The minimum over beta is a convex, piecewise quadratic function of alpha.
+/// This is Newton's method for that function; a step that increases it is halved.
 class BoxedStep {
  public:
-  /// alpha, the best beta of each frame for it, and which of these are within their bounds.
+  /// alpha, each frame's best beta for it, and the indices of betas strictly inside their bounds.
   struct Point {
     Eigen::VectorXd alpha;
     std::vector<Eigen::VectorXd> beta;
@@ -87,7 +87,7 @@ class BoxedStep {
       const Eigen::VectorXd way = newton() - here_.alpha;
       Point next = point_at(here_.alpha + way);
       const bool settled = next.free == here_.free;
-      // Halfway often enough it is below, unless rounding is all that is left.
+      // Halving often enough decreases the value, unless only rounding is left.
       for (double share = 0.5; !settled && next.value > here_.value; share /= 2) {
         if (share < 1e-6) return here_;
         next = point_at(here_.alpha + share * way);
@@ -98,7 +98,7 @@ class BoxedStep {
     return here_;
   }
 
-  /// How many directions of alpha the landmarks determine, and not the prior.
+  /// Number of directions of alpha that the landmarks determine rather than the prior.
   double determined() const {
     const Eigen::Index size = here_.alpha.size();
     if (size == 0) return 0;
@@ -128,7 +128,7 @@ class BoxedStep {
     return point;
   }
 
-  /// The system of alpha where every beta on a bound stays there.
+  /// System for alpha if every beta at a bound stays there.
   struct Reduced {
     Eigen::MatrixXd matrix;  ///< lower triangle
     Eigen::VectorXd right;
@@ -167,7 +167,7 @@ class BoxedStep {
   Point here_;
 };
 
-/// The frames at a share of the way to the step's end, each with the best camera there.
+/// Moves frames by a share of the step and finds the best camera of each.
 std::vector<FittedFrame> moved(std::vector<FittedFrame> frames, const BoxedStep::Point& end,
                                double share) {
   const Eigen::VectorXd from = frames.front().alpha();
@@ -175,14 +175,14 @@ std::vector<FittedFrame> moved(std::vector<FittedFrame> frames, const BoxedStep:
   for (std::size_t f = 0; f < frames.size(); ++f) {
     const Eigen::VectorXd beta = frames[f].beta();
     frames[f].set_alpha(alpha);
-    // This form stays within the box in spite of rounding.
+    // This form stays inside the box despite rounding.
     frames[f].set_beta((1 - share) * beta + share * end.beta[f]);
     frames[f].estimate_camera();
   }
   return frames;
 }
 
-/// Steps with the noise as it is. `prior`: weight of |alpha|^2.
+/// Result of steps with fixed noise. `determined` is set only after a single step.
 struct Descent {
   FittedClip clip;
   double determined = 0;
@@ -216,10 +216,10 @@ Descent descended(std::vector<FittedFrame> frames, const FitOptions& options, do
   return result;
 }
 
-/// Of |alpha|^2 beside the landmarks of all frames, which say as much as fewer independent ones.
+/// Weight of |alpha|^2. The landmarks of all frames count as fewer independent frames.
 double prior_of(const KnownNoise& known, const ClipNoise& noise, double frames) {
-  // That of eq. 4 goes with the sigma it was made for. An estimated one is a standard deviation as
-  // alpha's are, and both have half of their squares.
+  // The prior of eq. 4 belongs to the given sigma. An estimated sigma is a standard deviation like
+  // alpha's, so both terms have the factor 1/2.
   const double own = known.sigma ? 1 : 0.5;
   return own * frames / noise.independent_frames(frames);
 }
@@ -298,7 +298,7 @@ FittedClip smoothed(std::vector<FittedFrame> frames, const FitOptions& options,
       diagonal += system.N_bb.diagonal().mean() / double(count);
       grams.push_back(std::move(system.N_bb));
     }
-    // Kept from here on, or the energy would change its meaning between iterations.
+    // The weight stays fixed, or the energies of iterations would not be comparable.
     if (!penalty) penalty = smoothness_penalty(options.smoothness, times, diagonal);
     const Eigen::MatrixXd smooth = smooth_weights(grams, h, times, *penalty, beta);
     std::vector<FittedFrame> trial = clip.frames;

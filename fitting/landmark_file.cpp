@@ -21,7 +21,7 @@ namespace mimetra {
 
 namespace {
 
-/// Throws IoError for what is no place in an image, nor near one.
+/// Throws IoError if a landmark is too far away to be in an image or near it.
 void check_places(const std::string& path, const LandmarkTrack& track) {
   constexpr double kFarthest = 1e7;  // pixels; the largest images have a million in a row
   for (Eigen::Index f = 0; f < track.points.rows(); ++f) {
@@ -65,10 +65,10 @@ LandmarkTrack read_pts(const std::filesystem::path& path) {
   return track;
 }
 
-/// Its column of seconds, in lower case.
+/// Column of OpenFace with seconds, in lower case.
 constexpr const char* kOpenFaceTime = "timestamp";
 
-/// Number of a column called x7 or x_7, for the letter 'x'.
+/// Number of a column such as x7 or x_7, if `letter` is 'x'.
 std::optional<std::size_t> landmark_number(std::string_view name, char letter) {
   if (name.empty() || name.front() != letter) return {};
   name.remove_prefix(name.starts_with(std::string{letter, '_'}) ? 2 : 1);
@@ -78,7 +78,7 @@ std::optional<std::size_t> landmark_number(std::string_view name, char letter) {
   return number;
 }
 
-/// Those that read back equal.
+/// Shortest digits that read back as the same number.
 std::string shortest_digits(double value) {
   std::array<char, 32> digits;
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
@@ -169,7 +169,7 @@ class LandmarkReader {
     ++frames_;
   }
 
-  /// A column of other things than numbers, such as names of images, says nothing.
+  /// Ignores a column that does not hold numbers, such as names of images.
   void read_frame_number(std::size_t column) {
     const auto number = frame_number_in(csv_.field(column));
     if (!number) {

@@ -17,9 +17,9 @@ namespace mimetra {
 
 namespace {
 
-/// The ridge with which so many expressions are as strong as those of faces are. Landmarks tell ten
-/// apart without one. Of 52 it is that of a normal prior with which |beta|^2 is 5 on average:
-/// captured performances of 51 and 52 expressions have 2.5 and 5.2.
+/// Default ridge, with which expressions are as strong as in real faces. Landmarks can tell ten
+/// expressions apart without it. For 52 expressions it equals a normal prior for which |beta|^2 is
+/// 5 on average. Captured performances with 51 and 52 expressions have 2.5 and 5.2.
 double usual_ridge(Eigen::Index expressions) {
   constexpr Eigen::Index kToldApart = 10;
   constexpr double kOfEachFurther = 0.125;
@@ -52,7 +52,7 @@ void check(const FitOptions& options) {
   }
 }
 
-/// The automatic camera of so many frames is chosen here.
+/// Camera of the options, which resolves `automatic` by the number of frames.
 CameraModel camera_of(const FitOptions& options, std::size_t frames) {
   using Camera = FitOptions::Camera;
   Camera camera = options.camera;
@@ -71,8 +71,7 @@ std::vector<FrameFit> results_of(const FittedClip& clip) {
     FrameFit& fit = fits.emplace_back();
     fit.camera = frame.camera();
     fit.depth = frame.depth_row();
-    // The image of the origin stays where it is: rows of a perspective camera hold it times the
-    // depth.
+    // This keeps the image of the origin: rows of a perspective camera hold it times the depth.
     fit.camera.leftCols<3>() += fit.camera.col(3) * fit.depth.head<3>();
     fit.alpha = frame.alpha();
     fit.beta = frame.beta();
@@ -96,7 +95,7 @@ FittedClip solved(std::vector<FittedFrame> frames, const FitOptions& options,
              : fit_alternating(std::move(frames), options, context);
 }
 
-/// One clip of all frames, or one of each frame, which starts from the one before.
+/// Solves one clip of all frames, or one clip for each frame, starting from the previous one.
 std::vector<FittedClip> solved_by_shape(std::vector<FittedFrame> frames, const FitOptions& options,
                                         const ClipOutline& outline, const Context& context) {
   std::vector<FittedClip> clips;
@@ -118,7 +117,7 @@ std::vector<FittedClip> solved_by_shape(std::vector<FittedFrame> frames, const F
   return clips;
 }
 
-/// Fits of frames that are seen, at their `times`.
+/// Fits frames with landmarks. `times` are the times of these frames.
 std::vector<FrameFit> fits_of(std::vector<FittedFrame> frames, const FitOptions& options,
                               const Eigen::VectorXd& times, const ClipOutline& outline,
                               const Context& context) {
@@ -145,8 +144,8 @@ std::vector<FrameFit> fits_of(std::vector<FittedFrame> frames, const FitOptions&
   return results_of(smooth);
 }
 
-/// A frame without landmarks at a share of the way between two with some. What is equal in both
-/// stays so.
+/// Frame without landmarks at a share of the way between two frames with landmarks. Values that are
+/// equal in both stay equal.
 FrameFit unseen_between(const FrameFit& before, const FrameFit& after, double share) {
   FrameFit fit;
   fit.camera = before.camera + share * (after.camera - before.camera);
@@ -158,7 +157,7 @@ FrameFit unseen_between(const FrameFit& before, const FrameFit& after, double sh
   return fit;
 }
 
-/// The fits of all frames, given those of the `seen` ones.
+/// Fits of all frames, from the fits of frames that are `seen`.
 std::vector<FrameFit> with_unseen(const std::vector<FrameFit>& fits,
                                   const std::vector<Eigen::Index>& seen,
                                   const Eigen::VectorXd& times) {
@@ -177,7 +176,7 @@ std::vector<FrameFit> with_unseen(const std::vector<FrameFit>& fits,
   return all;
 }
 
-/// The rows of those landmarks that are seen: mostly the same ones in many frames.
+/// Rows of the seen landmarks. Many frames see the same ones.
 using RowsOfSeen = std::map<std::vector<Eigen::Index>, std::shared_ptr<const LandmarkRows>>;
 
 }  // namespace
@@ -189,14 +188,14 @@ struct LandmarkFitter::State {
   FittedFrame frame(const Frames& points, Eigen::Index index, const std::vector<Eigen::Index>& seen,
                     const std::optional<double>& sigma, const CameraModel& camera,
                     RowsOfSeen& rows_of_seen) const;
-  /// Of the frames with `indices`. Throws std::invalid_argument.
+  /// Selects the frames with `indices`. Throws std::invalid_argument.
   ClipOutline on_outline(const Frames& points, Eigen::Index frames,
                          const std::vector<Eigen::Index>& indices) const;
   FitOptions checked(const Frames& points, const FitOptions& options,
                      const Eigen::VectorXd& times) const;
 };
 
-/// The options with the default ridge filled in.
+/// Options with the default ridge filled in.
 FitOptions LandmarkFitter::State::checked(const Frames& points, const FitOptions& options,
                                           const Eigen::VectorXd& times) const {
   check(options);

@@ -6,16 +6,16 @@
 
 #include "toolkit/model/landmark_track.h"
 
-/// What the readers of landmarks share. Internal to landmark_file.h.
+/// Helpers shared by the readers of landmarks. Internal to landmark_file.h.
 namespace mimetra {
 
-/// A coordinate of a landmark that was not seen.
+/// Coordinate of a landmark that was not seen.
 constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
 
-/// What numbers of frames say of a track without times: its step, and what is missing.
+/// Sets the step of a track without times from its frame numbers, and notes missing frames.
 void number_frames(LandmarkTrack& track, const std::vector<long long>& numbers);
 
-/// The reader of .json files. Throws IoError.
+/// Reads a .json file. Throws IoError.
 LandmarkTrack read_landmark_json(const std::filesystem::path& path);
 
 }  // namespace mimetra

@@ -28,7 +28,7 @@ bool is_points(const fs::path& path) {
   return lower_extension(path) == ".pts";
 }
 
-/// The landmarks of a whole clip before any frame is chosen: files of a frame each, or a track.
+/// Landmarks of a whole clip before frames are selected: one file a frame, or a track.
 struct LandmarkFiles {
   Paths frames;  ///< .pts files or images
   fs::path track;
@@ -54,7 +54,7 @@ LandmarkFiles input_of(const std::string& text) {
   return {files, {}, images};
 }
 
-/// The image of the same name beside a file, of several the first; empty where there is none.
+/// Image of the same name beside a file, the first of several; empty if there is none.
 fs::path image_beside(const fs::path& file) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
   fs::path found;
@@ -67,7 +67,7 @@ fs::path image_beside(const fs::path& file) {
   return found;
 }
 
-/// Says that images were passed over because .pts files stand among them.
+/// Notes that images without .pts files are ignored.
 void note_others(LandmarksRead& read, const std::string& text, const LandmarkFiles& input) {
   const auto has_points = [&](const fs::path& image) {
     return std::ranges::find(input.frames, image.stem(), &fs::path::stem) != input.frames.end();
@@ -79,7 +79,7 @@ void note_others(LandmarksRead& read, const std::string& text, const LandmarkFil
                        "name the images by a pattern to find faces in them");
 }
 
-/// Says which numbers no file of points has.
+/// Notes which numbers are missing among the files.
 void note_missing(LandmarksRead& read, const std::string& text, const Paths& files) {
   const std::vector<std::string> missing = missing_numbers(files);
   if (missing.empty()) return;
@@ -87,8 +87,8 @@ void note_missing(LandmarksRead& read, const std::string& text, const Paths& fil
                        "; frames follow each other without a pause");
 }
 
-/// Options that change nothing are mistakes. `what` says what the input is where it shows faces,
-/// "is a video"; it is nothing for landmarks.
+/// Throws MismatchError if an option has no effect. `what` describes an input that shows faces, as
+/// "is a video", and is empty for landmarks.
 void check_needed(const std::string& text, const std::string& what,
                   const LandmarkInputOptions& options) {
   if (!what.empty() && options.images) {
@@ -102,8 +102,7 @@ void check_needed(const std::string& text, const std::string& what,
   }
 }
 
-/// Throws IoError where frames up to `end`, or all that there should be, are asked for and the
-/// video is damaged before.
+/// Throws IoError if the video is damaged before frame `end`, or at all without `end`.
 void check_whole(const std::string& text, const VideoFile& video, std::optional<int> end) {
   const std::string sound = std::to_string(video.frames());
   if (video.damage().empty() || (end && *end <= video.frames())) return;
@@ -111,7 +110,7 @@ void check_whole(const std::string& text, const VideoFile& video, std::optional<
       text, video.damage() + "; option 'frames' 0:" + sound + " takes the " + sound + " before it");
 }
 
-/// What each frame of the whole clip shows, or null; and its files.
+/// Images of the whole clip, or null, and their files.
 struct ShownImages {
   std::shared_ptr<const ImageSequence> images;
   Paths files;
@@ -156,7 +155,7 @@ LandmarkTrack taken_from(LandmarkTrack track, const std::vector<int>& frames) {
   return track;
 }
 
-/// Frames keep the time they have in the whole clip, whichever part is taken.
+/// Keeps the times that frames have in the whole clip.
 void set_times(LandmarksRead& read, const std::string& text, const std::vector<int>& frames,
                const SequenceSource& source) {
   LandmarkTrack& track = read.track;
@@ -174,7 +173,7 @@ void set_times(LandmarksRead& read, const std::string& text, const std::vector<i
   }
 }
 
-/// One frame from each file.
+/// Reads one frame from each file.
 LandmarkTrack read_points(const Paths& files, const Context& context) {
   LandmarkTrack all;
   for (std::size_t i = 0; i < files.size(); ++i) {
@@ -193,7 +192,7 @@ LandmarkTrack read_points(const Paths& files, const Context& context) {
   return all;
 }
 
-/// Frames of which the detector was not sure become NaN.
+/// Replaces frames below the confidence with NaN.
 void drop_doubtful(LandmarksRead& read, const std::string& text, double min_confidence) {
   const LandmarkTrack& track = read.track;
   int doubtful = 0;
@@ -212,7 +211,7 @@ void drop_doubtful(LandmarksRead& read, const std::string& text, double min_conf
   }
 }
 
-/// Width and height: "1920x1080".
+/// Parses width and height, as "1920x1080".
 std::pair<int, int> size_of(const std::string& text) {
   int width = 0, height = 0;
   const char* const end = text.data() + text.size();
@@ -234,7 +233,7 @@ bool is_placeholder(const Eigen::RowVector2d& point) {
   return point == Eigen::RowVector2d(0, 0) || point == Eigen::RowVector2d(-1, -1);
 }
 
-/// The landmarks of a frame (n x 2) that are none, by their rows.
+/// Rows of landmarks (n x 2) that are placeholders.
 std::vector<Eigen::Index> placeholders_of(const Points& points) {
   std::vector<Eigen::Index> found;
   Eigen::RowVector2d lowest = Eigen::RowVector2d::Constant(std::numeric_limits<double>::infinity());
@@ -254,8 +253,8 @@ std::vector<Eigen::Index> placeholders_of(const Points& points) {
   return found;
 }
 
-/// Makes NaN of landmarks at exactly (0, 0) or (-1, -1) that lie outside of the box of their
-/// frame's others, and of frames that have nothing else. Returns what to say of it, "" for nothing.
+/// Replaces placeholders, landmarks at exactly (0, 0) or (-1, -1), with NaN. They must be outside
+/// the box of the frame's other landmarks, or be the frame's only ones. Returns a note or "".
 std::string drop_placeholders(LandmarkTrack& track) {
   if (track.landmarks() < kFewForAFace) return "";
   int frames = 0, partly = 0;
@@ -277,7 +276,7 @@ std::string drop_placeholders(LandmarkTrack& track) {
   return text;
 }
 
-/// No face has nearly all its landmarks so near the corner in pixels; a few may be found wrong.
+/// True if nine in ten landmarks are within 2 of the corner, which no face in pixels is.
 bool are_shares(const LandmarkTrack& track) {
   constexpr double kMostShare = 2, kMostWrong = 0.1;
   Eigen::Index seen = 0, far = 0;
@@ -291,9 +290,9 @@ bool are_shares(const LandmarkTrack& track) {
          static_cast<double>(far) <= kMostWrong * static_cast<double>(seen);
 }
 
-/// Turns shares of the image's width and height, as MediaPipe counts, into pixels.
+/// Converts shares of the image's width and height, as MediaPipe counts, to pixels.
 void scale_to_pixels(LandmarkTrack& track, int width, int height) {
-  // 0 is the image's edge there, and the middle of the first pixel here.
+  // 0 is the edge of the image in shares, and the middle of the first pixel in pixels.
   for (Eigen::Index column = 0; column < track.points.cols(); ++column) {
     const double size = column % 2 == 0 ? width : height;
     track.points.col(column) = track.points.col(column).array() * size - 0.5;

@@ -14,38 +14,39 @@
 namespace mimetra {
 
 struct LandmarkInputOptions {
-  /// For images. Frames of less confidence are taken as not seen, also those of a track.
+  /// Options of the search in images. Its min_confidence also applies to the frames of a track.
   FaceOptions faces = {};
-  /// The images that the landmarks of a track or of .pts files belong to, one for each frame: a
-  /// video, or a file, folder or pattern. By default those of the same name beside .pts files, or
-  /// none.
+  /// Images of the landmarks in a track or in .pts files, one a frame: a video, a file, a folder or
+  /// a pattern. Defaults to images of the same name beside .pts files.
   std::optional<std::string> images = {};
-  /// "1920x1080": of landmarks in shares of width and height, as MediaPipe's are. By default that
-  /// of the images, where there are any.
+  /// Size of the images, as "1920x1080", for landmarks in shares of width and height, as
+  /// MediaPipe's. Defaults to the size of `images`.
   std::optional<std::string> image_size = {};
 
   static constexpr Option kImageSize{"image_size", &LandmarkInputOptions::image_size};
   static constexpr Option kImages{"images", &LandmarkInputOptions::images};
 };
 
-/// Landmarks, and what was noticed while reading them.
+/// Landmarks with notes from reading them.
 struct LandmarksRead {
-  LandmarkTrack track;  ///< with times
-  /// What the frames show (F images), or null.
+  LandmarkTrack track;  ///< has times
+  /// Images of the frames (F), or null.
   std::shared_ptr<const ImageSequence> images = {};
-  /// What was noticed in each frame (F, "" for nothing), or none.
+  /// Note on each frame (F, "" for none), or empty.
   std::vector<std::string> frame_notes = {};
   std::vector<std::filesystem::path> files = {};
   std::vector<std::string> notes = {};
 };
 
-/// Reads the landmarks of a clip: one .pts, .csv or .json file, a folder or pattern of .pts files,
-/// or a video, an image, a folder or pattern of images in which faces are found; one frame a file
-/// in natural order. With times, the frames that `source.frames` takes. Throws IoError, also as
-/// VideoFile and track_face, and where a frame that is taken comes after a video's damage;
-/// MismatchError for files that differ in their number of landmarks, another number of images, an
-/// option that changes nothing, and as selected_frames; std::invalid_argument for options out of
-/// range; Cancelled.
+/// Reads the landmarks of a clip: a .pts, .csv or .json file, or a folder or pattern of .pts files.
+/// Images and videos are searched for faces: a video, an image, or a folder or pattern of images.
+/// Each file is a frame, in natural order. The result has times, and holds the frames that
+/// `source.frames` selects.
+///
+/// Throws IoError as VideoFile and track_face() do, and if a selected frame comes after damage in a
+/// video. Throws MismatchError as selected_frames() does, and if files differ in their number of
+/// landmarks, the number of images is wrong or an option has no effect. Throws
+/// std::invalid_argument for an option out of range, and Cancelled.
 LandmarksRead read_landmark_input(const std::string& text, const SequenceSource& source = {},
                                   const LandmarkInputOptions& = {}, const Context& = {});
 

@@ -22,7 +22,7 @@ namespace mimetra {
 
 namespace {
 
-/// Keys under which a frame has its face: ours, and those of MediaPipe's interfaces.
+/// Keys for the faces of a frame: ours, and those of MediaPipe's interfaces.
 constexpr std::array kFaceKeys = {"points",    "faceLandmarks",      "face_landmarks",
                                   "landmarks", "multiFaceLandmarks", "multi_face_landmarks",
                                   "landmark"};
@@ -37,8 +37,8 @@ bool is_list_of_coordinates(const Json& value) {
   return value.is_array() && (value.size() == 2 || value.size() == 3);
 }
 
-/// Whether a value is one point, [x, y] or {"x", "y"}; none where it is null, or so few nulls that
-/// they may be coordinates as well as points.
+/// Whether a value is one point, [x, y] or {"x", "y"}. Empty if it is null, or a list of two or
+/// three nulls, which may be coordinates or points.
 std::optional<bool> is_point(const Json& value) {
   if (value.is_null()) return {};
   if (!value.is_array()) return has_coordinates(value);
@@ -48,7 +48,7 @@ std::optional<bool> is_point(const Json& value) {
   return false;
 }
 
-/// Judged by the first entry that is surely a point, or surely none; true for a list without any.
+/// Decides by the first entry that clearly is or is not a point; true if there is none.
 bool are_points(const Json& list) {
   for (const Json& entry : list) {
     if (const auto known = is_point(entry)) return *known;
@@ -121,13 +121,13 @@ class JsonReader {
     times_.push_back(time);
   }
 
-  /// pandas writes whole numbers as 1.0.
+  /// Accepts whole numbers such as 1.0, as pandas writes them.
   static void read_frame_number(const Json& value, std::vector<long long>& numbers) {
     const auto number = value.is_number() ? frame_number(value.get<double>()) : std::nullopt;
     if (number) numbers.push_back(*number);
   }
 
-  /// All faces in a frame or in a part of it of which something is seen.
+  /// Adds all faces of a frame, or of a part of it, that have a visible landmark.
   void add_faces(const Json& value, const std::string& place, std::vector<Points>& faces) {
     if (value.is_object()) {
       for (const char* key : kFaceKeys) {
@@ -161,7 +161,7 @@ class JsonReader {
     return points;
   }
 
-  /// A depth after x and y is left out.
+  /// Reads x and y and ignores a depth.
   void read_point(const Json& point, const std::string& place, Points& points) const {
     if (point.is_null()) {
       points.insert(points.end(), 2, kUnseen);
@@ -174,7 +174,7 @@ class JsonReader {
     }
   }
 
-  /// Those of a point that was not seen are both null.
+  /// Both are null for a point that was not seen.
   void read_coordinates(const Json& x, const Json& y, const std::string& place_of_x,
                         const std::string& place_of_y, Points& points) const {
     const bool is_seen = !x.is_null() || !y.is_null();
@@ -195,7 +195,7 @@ class JsonReader {
     return followed_face(boxes);
   }
 
-  /// Says where several faces are, and what came of it.
+  /// Notes frames with several faces, and the choice among them.
   void note_faces(const FollowedFace& followed, std::vector<std::string>& notes) const {
     std::vector<int> several, others;
     for (std::size_t f = 0; f < faces_.size(); ++f) {
@@ -248,7 +248,7 @@ class JsonReader {
     return points;
   }
 
-  /// One number for each frame, or none at all.
+  /// One number for each frame, or none.
   Eigen::VectorXd of_frames(const std::vector<double>& values, const std::string& name) const {
     if (!values.empty() && values.size() != faces_.size()) {
       fail("/frames", "\"" + name + "\" is in " + std::to_string(values.size()) + " of " +
@@ -258,7 +258,7 @@ class JsonReader {
                                              static_cast<Eigen::Index>(values.size()));
   }
 
-  /// Frames per second that the file says; 0 where it does not.
+  /// Frames per second in the file; 0 if it has none.
   double rate() const {
     for (const char* key : kRateKeys) {
       if (!root_.is_object() || !root_.contains(key)) continue;
@@ -269,7 +269,8 @@ class JsonReader {
     return 0;
   }
 
-  /// Of the first key that has one in each frame, and rises; none, and a note, where none does.
+  /// Ascending numbers of all frames under the first such key; empty, with a note, if none has
+  /// them.
   std::vector<long long> frame_numbers(std::vector<std::string>& notes) const {
     for (const auto& [key, numbers] : frame_numbers_) {
       const bool rise =
@@ -301,7 +302,7 @@ class JsonReader {
   std::string path_;
   Json root_;
   std::size_t landmarks_ = 0;
-  std::vector<std::vector<Points>> faces_;  ///< of each frame
+  std::vector<std::vector<Points>> faces_;  ///< faces of each frame
   std::vector<double> times_, confidences_;
   std::map<std::string, std::vector<long long>> frame_numbers_;  ///< by key, as "frame"
 };

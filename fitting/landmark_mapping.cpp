@@ -15,9 +15,9 @@ namespace mimetra {
 
 namespace {
 
-/// MediaPipe's landmark for each of iBUG's 1 to 68. The jaw's are spread evenly along the face's
-/// oval from the height of the eyes to the chin; eyes, brows, nose and lips are where the two
-/// schemes name the same places.
+/// MediaPipe's landmark for each of iBUG's 1 to 68. The landmarks of the jaw are spread evenly
+/// along the face's oval from the height of the eyes to the chin. Both schemes have the same places
+/// on eyes, brows, nose and lips.
 constexpr std::array<int, kFaceLandmarks> kMediapipeOfIbug = {
     127, 234, 93,  132, 58,  136, 150, 176, 152, 400, 379, 365, 288, 361, 323, 454, 356,  // jaw
     70,  63,  105, 66,  107,                                    // right brow
@@ -36,7 +36,7 @@ bool is_mediapipe(const LandmarkTrack& track) {
   return !track.names.empty() && track.names.front() == "mp0";
 }
 
-/// The landmark at, or nearest to, one of iBUG's 68: "mp133" for "40". None for another name.
+/// MediaPipe's name at or near one of iBUG's 68 landmarks: "mp133" for "40". Empty for other names.
 std::optional<std::string> mediapipe_name(std::string_view ibug) {
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(ibug.data(), ibug.data() + ibug.size(), number);
@@ -45,7 +45,7 @@ std::optional<std::string> mediapipe_name(std::string_view ibug) {
   return kMediapipePrefix + std::to_string(kMediapipeOfIbug[number - 1]);
 }
 
-/// Numbered landmarks are those of a scheme, which has as many as its largest number.
+/// True for the names "1", "2", ..., which belong to a scheme with as many landmarks.
 bool is_numbered(const LandmarkTrack& track) {
   return track.names == numbered_names(track.names.size());
 }
@@ -74,14 +74,14 @@ void check_scheme(const std::string& name, const LandmarkTrack& track) {
                       std::to_string(track.landmarks()) + "; is it for another set of landmarks?");
 }
 
-// iBUG's numbers, of a first one and of the one after the last.
+// Ranges of iBUG's numbers: the first, and the one after the last.
 constexpr std::pair kRightEye{36, 42}, kLeftEye{42, 48}, kLips{48, 68};
 
 bool is_in(int number, std::pair<int, int> part) {
   return number >= part.first && number < part.second;
 }
 
-/// \pre there is a landmark of the part
+/// \pre The part has a landmark.
 Eigen::RowVector3d middle_of(const Positions& positions, const LandmarkVertices& landmarks,
                              std::pair<int, int> part) {
   Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
@@ -163,7 +163,7 @@ Eigen::Matrix3d looking_ahead(const Positions& neutral, const LandmarkVertices& 
   const Eigen::RowVector3d right_eye = middle_of(neutral, landmarks, kRightEye);
   const Eigen::RowVector3d left_eye = middle_of(neutral, landmarks, kLeftEye);
   const Eigen::RowVector3d lips = middle_of(neutral, landmarks, kLips);
-  // Rows as a viewer has them: right, which is the face's own left, up, and towards him.
+  // Rows are axes of a viewer: right (the face's own left), up, and towards the viewer.
   Eigen::Matrix3d face;
   face.row(0) = (left_eye - right_eye).normalized();
   face.row(2) = face.row(0).cross((left_eye + right_eye) / 2 - lips).normalized();

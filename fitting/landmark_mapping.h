@@ -9,41 +9,40 @@
 
 namespace mimetra {
 
-/// "1", "2", ...: iBUG counts its landmarks so.
+/// Names of numbered landmarks, as iBUG counts: "1", "2", ...
 std::vector<std::string> numbered_names(std::size_t count);
 
-/// Gives numbered landmarks MediaPipe's names, "mp0" to "mp477", where there are 468 of them, or
-/// 478 with irises. Others keep theirs.
+/// Renames 468 numbered landmarks, or 478 with irises, to MediaPipe's "mp0" to "mp477".
 void name_mediapipe_landmarks(LandmarkTrack& track);
 
-/// Landmarks of a track that a mapping knows.
+/// Landmarks of a track that occur in a mapping.
 struct MappedLandmarks {
-  std::vector<std::string> names;  ///< of the landmarks (n), as the mapping has them
-  std::vector<int> vertices;       ///< of the model, one per landmark (n)
+  std::vector<std::string> names;  ///< names of the landmarks (n) in the mapping
+  std::vector<int> vertices;       ///< vertex of the model for each landmark (n)
   Frames points;                   ///< F x 2n, as LandmarkTrack::points
-  /// Those of iBUG's jaw (1 to 17 of 68) that the mapping lacks, which lie on the face's outline: F
-  /// x 2m.
+  /// iBUG's landmarks of the jaw (1 to 17 of 68) that the mapping lacks: F x 2m. They are on the
+  /// outline of the face.
   Frames outline = {};
-  /// Vertices of iBUG's landmarks (0 to 67), by the names "1" to "68"; none where the track's are
-  /// numbered as another scheme has them.
+  /// Vertices of iBUG's landmarks (0 to 67), which the mapping names "1" to "68". Empty if another
+  /// scheme numbers the track.
   LandmarkVertices ibug = {};
 };
 
-/// Takes them in the mapping's order; of MediaPipe's landmarks ("mp0" to "mp477") those at the
-/// places of iBUG's that the mapping names. Throws MismatchError where there is none, and where
-/// landmarks are numbered and the mapping has larger numbers.
+/// Selects the landmarks of a track in the mapping's order. For MediaPipe's landmarks ("mp0" to
+/// "mp477") it takes those at the places of iBUG's landmarks in the mapping. Throws MismatchError
+/// if no landmark is in the mapping, or if a numbered track lacks a landmark of the mapping.
 MappedLandmarks map_landmarks(const LandmarkTrack& track, const LandmarkMapping& mapping);
 
-/// True for landmarks of both eyes and the mouth.
+/// True if landmarks of both eyes and of the mouth are known.
 bool tell_axes(const LandmarkVertices& landmarks);
 
-/// iBUG's landmarks of a model of so many vertices, where a mapping in its folder has those that
-/// tell_axes(): tracks may name others. Else none. Throws IoError where a mapping cannot be read.
+/// Reads iBUG's landmarks of a model with `vertices` vertices from the first mapping in its folder
+/// that satisfies tell_axes(). Empty if there is none. Throws IoError if a mapping cannot be read.
 LandmarkVertices landmarks_beside(const std::filesystem::path& model, int vertices);
 
-/// What carries a model to one that looks along +z with y up, by where iBUG's landmarks (0 to 67)
-/// are on it: of the rotations that exchange axes the nearest to how its eyes and mouth lie. The
-/// identity where it has no landmark of an eye or of the mouth.
+/// Rotation after which the model looks along +z with y up. Among the rotations that exchange axes,
+/// it is the nearest to the pose of eyes and mouth, which iBUG's landmarks (0 to 67) give. The
+/// identity if an eye or the mouth has no landmark.
 Eigen::Matrix3d looking_ahead(const Positions& neutral, const LandmarkVertices& landmarks);
 
 }  // namespace mimetra

@@ -20,7 +20,7 @@ constexpr Color kModel = {255, 0, 255};
 constexpr Color kResidual = {255, 0, 0};
 constexpr Color kRim = {0, 0, 0};
 
-/// Larger images than this have no pixel in common with coordinates beyond it.
+/// Coordinates beyond this are outside every image.
 constexpr double kFarAway = 1e6;
 
 struct Pixel {
@@ -33,7 +33,7 @@ std::optional<Pixel> nearest_pixel(const Eigen::RowVector2d& point) {
   return Pixel{static_cast<int>(std::lround(point.x())), static_cast<int>(std::lround(point.y()))};
 }
 
-/// Calls `visit(x, y)` for the pixels of a line, ends included (Bresenham).
+/// Calls `visit(x, y)` for the pixels of a line, including its ends (Bresenham).
 template <typename Visit>
 void for_each_on_line(Pixel at, const Pixel& end, Visit visit) {
   const int dx = std::abs(end.x - at.x), dy = -std::abs(end.y - at.y);
@@ -54,7 +54,7 @@ void for_each_on_line(Pixel at, const Pixel& end, Visit visit) {
   }
 }
 
-/// True where the whole line lies on one side of the image.
+/// True if the whole line is on one side of the image.
 bool misses(const Image& image, const Pixel& a, const Pixel& b) {
   return std::max(a.x, b.x) < 0 || std::max(a.y, b.y) < 0 || std::min(a.x, b.x) >= image.width ||
          std::min(a.y, b.y) >= image.height;
@@ -78,7 +78,7 @@ void draw_cross(Image& image, const Pixel& middle, int half, const Color& color)
   draw_line(image, {middle.x, middle.y - half}, {middle.x, middle.y + half}, color);
 }
 
-/// y is down: counter-clockwise corners have a negative area.
+/// y points down, so counter-clockwise corners have a negative area.
 bool shows_front(const ImagePoints& points, const Triangles& triangles, Eigen::Index t) {
   const Eigen::RowVector2d a = points.row(triangles(t, 0));
   const Eigen::RowVector2d ab = points.row(triangles(t, 1)) - a,
@@ -86,7 +86,7 @@ bool shows_front(const ImagePoints& points, const Triangles& triangles, Eigen::I
   return ab.x() * ac.y() - ab.y() * ac.x() < 0;
 }
 
-/// Pixels that an edge covers. Each is mixed only once, so that a face shows through dense edges.
+/// Pixels covered by edges. Each is mixed only once, so a face shows through dense edges.
 std::vector<bool> edge_pixels(const Image& image, const Triangles& triangles,
                               const ImagePoints& points) {
   std::vector<bool> covered(image.pixels.size());
@@ -104,7 +104,7 @@ std::vector<bool> edge_pixels(const Image& image, const Triangles& triangles,
   return covered;
 }
 
-/// Two thirds of the first, one of the second.
+/// Mixes two thirds of `under` with one third of `over`.
 std::uint8_t mixed(int under, int over) {
   return static_cast<std::uint8_t>((2 * under + over) / 3);
 }
@@ -140,7 +140,7 @@ int marker_size(const ImagePoints& vertices) {
   return extent < kFarAway ? std::max(1, static_cast<int>(extent / 300)) : 1;
 }
 
-/// Smaller parts, in pixels, show nothing, and would grow beyond all bounds where they are flat.
+/// Smaller parts, in pixels, show nothing. Flat ones would grow beyond all bounds when scaled.
 constexpr int kLeastPart = 4;
 
 struct Box {
@@ -150,7 +150,7 @@ struct Box {
   int height;
 };
 
-/// Of the points, and a tenth more on each side.
+/// Box of the points with a margin of a tenth on each side.
 Box box_with_margin(const ImagePoints& points) {
   if (points.rows() == 0 || !points.allFinite()) {
     throw std::invalid_argument("the mesh has no finite vertices to look at");
@@ -199,7 +199,7 @@ Image draw_close_up(const Image& image, const Triangles& triangles, const Fitted
   const Eigen::RowVector2d corner(std::max(box.left, 0), std::max(box.top, 0));
   const Eigen::Array2d scale(double(scaled.width) / part.width,
                              double(scaled.height) / part.height);
-  // Pixels are squares around their middles: the image's corner is at -0.5.
+  // Pixels are squares around their middles, so the image's corner is at -0.5.
   const auto moved = [&](const ImagePoints& points) -> ImagePoints {
     return (((points.rowwise() - corner).array() + 0.5).rowwise() * scale.transpose() - 0.5)
         .matrix();

@@ -13,40 +13,40 @@
 
 namespace mimetra {
 
-/// What was fitted to an image, in its pixels.
+/// Fit of one image, in its pixels.
 struct FittedView {
-  /// The mesh's vertices as the camera sees them (N x 2): project().
+  /// Vertices of the mesh as seen by the camera (N x 2); see project().
   ImagePoints vertices;
-  /// Landmarks that were found (n x 2); NaN for those not seen.
+  /// Landmarks that were found (n x 2); NaN if not seen.
   ImagePoints landmarks;
-  /// The mesh's vertex of each (n), or none: then the model's own are not drawn.
+  /// Vertex of the mesh for each landmark (n). Empty to omit the model's landmarks.
   std::vector<int> landmark_vertices;
 };
 
-/// Draws over the image the edges of triangles whose front is seen (cyan, a third of each pixel),
-/// the landmarks that were found (yellow squares) and the model's own (magenta crosses), with a red
-/// line between the two. What is outside the image is left out. `triangles` are counter-clockwise
-/// where their front is seen. Throws std::invalid_argument where sizes disagree or a vertex is out
-/// of range.
+/// Draws a fit over the image and clips it to the image. Edges of front-facing triangles are cyan
+/// (a third of each pixel). Found landmarks are yellow squares, the model's landmarks are magenta
+/// crosses, and red lines connect the two. Front-facing triangles are counter-clockwise. Throws
+/// std::invalid_argument if sizes disagree or a vertex is out of range.
 Image draw_fit(const Image& image, const Triangles& triangles, const FittedView& view);
 
-/// The same for the part of the image around the mesh, its box and a tenth more on each side, at
-/// another height (>= 1): lines stay thin in a larger picture, and a strip shows faces of one size.
-/// Throws std::invalid_argument also where none of the mesh is inside the image.
+/// Draws the fit over the part of the image around the mesh: its box and a tenth more on each side,
+/// scaled to `height` (>= 1). Lines stay thin, and all faces of a strip have one size. Throws as
+/// draw_fit(), and std::invalid_argument if a vertex is not finite or the part shows fewer than 4 x
+/// 4 pixels of the image.
 Image draw_close_up(const Image& image, const Triangles& triangles, const FittedView& view,
                     int height);
 
-/// The images of a clip with what was fitted to them; copies share their data.
+/// Images of a clip with the fit drawn over them. Copies share their data.
 class FitPictures {
  public:
-  /// \pre one image and one camera for each frame of `sequence` and `mapped`
+  /// \pre There is one image and one camera for each frame of `sequence` and `mapped`.
   FitPictures(std::shared_ptr<const ImageSequence> images, MeshSequence sequence,
               const FittedCoefficients& fit, MappedLandmarks mapped);
 
-  /// A frame's whole image. Throws as ImageSequence::image.
+  /// Whole image of a frame. Throws as ImageSequence::image.
   Image overlay(int frame) const;
-  /// The faces of up to five of `frames`, evenly spread, side by side. Throws as
-  /// ImageSequence::image; MismatchError for a face outside its image.
+  /// Close-ups of up to five of `frames`, evenly spread, side by side. Throws as
+  /// ImageSequence::image, and MismatchError if a face is outside its image.
   Image strip(const std::vector<int>& frames) const;
 
  private:

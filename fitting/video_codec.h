@@ -7,50 +7,50 @@
 
 #include "toolkit/operations/image.h"
 
-/// Video files to pixels and back, where FFmpeg's libraries are there. Internal to video_file.h.
+/// Decoding and encoding of videos, with FFmpeg's libraries if available. Internal to video_file.h.
 namespace mimetra {
 
-/// The frames of a video, one after the other, as a player shows them.
+/// Frames of a video in order, as a player shows them.
 class VideoDecoder {
  public:
   virtual ~VideoDecoder() = default;
-  /// Goes to the next frame and returns its time in seconds; none after the last one. Throws
-  /// IoError where it is damaged, or the video ends before it should.
+  /// Advances to the next frame and returns its time in seconds; empty after the last frame. Throws
+  /// IoError if the frame is damaged or the video breaks off.
   virtual std::optional<double> next() = 0;
-  /// The frame's picture, turned as it is meant, with square pixels. \pre next() came to one
+  /// Picture of the current frame, upright and with square pixels. \pre next() returned a time
   virtual Image image() = 0;
 };
 
-/// Throws IoError for what is no video that can be read, and where FFmpeg's libraries are missing.
+/// Opens a video. Throws IoError if it is not a readable video or FFmpeg's libraries are missing.
 std::unique_ptr<VideoDecoder> open_video(const std::filesystem::path& path);
 
 class VideoEncoder {
  public:
   virtual ~VideoEncoder() = default;
-  /// Throws std::invalid_argument for an image of another size; OutputError.
+  /// Throws std::invalid_argument if the image has another size, and OutputError.
   virtual void add(const Image& image, double time) = 0;
-  /// Makes the file whole. Throws OutputError.
+  /// Completes the file. Throws OutputError.
   virtual void finish() = 0;
 };
 
-/// What a new video is like.
+/// Properties of a new video.
 struct VideoLayout {
-  std::string extension;  ///< ".mp4": chooses the container
+  std::string extension;  ///< selects the container, as ".mp4"
   int width = 0;
   int height = 0;
-  double fps = 0;  ///< about, for the encoder's plans
+  double fps = 0;  ///< approximate rate, for the encoder
   double first_time = 0;
-  double end_time = 0;               ///< where the last frame's picture ends
-  std::filesystem::path sound = {};  ///< a video whose sound goes along from first to end, or none
+  double end_time = 0;               ///< end of the last frame
+  std::filesystem::path sound = {};  ///< video whose sound is copied, or empty
 };
 
-/// Writes to `path`, whatever its name. Throws OutputError that names `target`, also where
+/// Creates a video in `path`, whatever its name. Throws OutputError that names `target`, also if
 /// FFmpeg's libraries are missing.
 std::unique_ptr<VideoEncoder> create_video(const std::filesystem::path& path,
                                            const std::filesystem::path& target,
                                            const VideoLayout& layout);
 
-/// False where create_video() would leave the sound of `video` out of a file with this extension.
+/// Returns false if create_video() would drop the sound of `video` in a file with this extension.
 /// Throws IoError.
 bool can_keep_sound(const std::filesystem::path& video, const std::string& extension);
 

@@ -32,8 +32,7 @@ bool is_video(const fs::path& path) {
   return std::ranges::find(known, lower_extension(path)) != known.end();
 }
 
-/// One decoder, and the images that it came by last: threads that draw frame after frame ask for
-/// them a little out of order.
+/// One decoder and its latest images: drawing threads ask for frames slightly out of order.
 struct VideoFile::State {
   explicit State(fs::path file) : path(std::move(file)) {}
 
@@ -76,8 +75,8 @@ struct VideoFile::State {
   std::string damage;
   std::mutex mutex;
   std::unique_ptr<VideoDecoder> decoder;
-  int next = 0;              ///< frame that the decoder comes to next
-  std::deque<Image> recent;  ///< of the frames before it
+  int next = 0;              ///< next frame of the decoder
+  std::deque<Image> recent;  ///< frames before `next`
 };
 
 VideoFile::VideoFile(fs::path path, const Context& context)
@@ -120,7 +119,7 @@ std::string size_text(const Image& image) {
   return std::to_string(image.width) + " x " + std::to_string(image.height);
 }
 
-/// \pre there is a picture
+/// \pre There is a picture.
 VideoLayout layout_of(const Pictures& pictures, const Eigen::VectorXd& times, const Image& first,
                       const std::filesystem::path& target) {
   const Eigen::Index last = times.size() - 1;
@@ -135,7 +134,7 @@ VideoLayout layout_of(const Pictures& pictures, const Eigen::VectorXd& times, co
           .sound = pictures.sound};
 }
 
-/// Draws some pictures at a time on all threads, and codes them in order.
+/// Draws batches of pictures on all threads and encodes them in order.
 void write_frames(const Pictures& pictures, const WriteRequest& request,
                   const std::filesystem::path& file, const Context& context) {
   const Eigen::VectorXd times =

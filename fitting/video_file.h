@@ -13,28 +13,25 @@
 
 namespace mimetra {
 
-/// Those of videos that can be read, in lower case.
+/// Extensions of readable videos, in lower case.
 std::vector<std::string> video_extensions();
 
 /// True for NAME.mp4 and the like in any case.
 bool is_video(const std::filesystem::path& path);
 
-/// The frames of a video, decoded when they are needed: turned as the file says, with square
-/// pixels. Going back starts from the beginning.
+/// Frames of a video, decoded on demand, upright and with square pixels. Going back restarts it.
 class VideoFile final : public ImageSequence {
  public:
-  /// Decodes all frames once, to know their times. Throws IoError for what is no video, where not
-  /// even its first frame can be decoded, and where FFmpeg's libraries are missing;
-  /// Cancelled.
+  /// Decodes all frames once to learn their times. Throws IoError if the file is not a video, its
+  /// first frame cannot be decoded, or FFmpeg's libraries are missing. Throws Cancelled.
   explicit VideoFile(std::filesystem::path path, const Context& context = {});
   ~VideoFile() override;
 
-  /// Those before the first one that is damaged.
+  /// Number of frames before the first damaged one.
   int frames() const override;
-  /// Seconds (F): the time stamps of the frames, which rise.
+  /// Time stamps of the frames in seconds (F), ascending.
   const Eigen::VectorXd& times() const;
-  /// Why there are no frames after the last one, where the video is damaged or breaks off. Nothing
-  /// where it is whole.
+  /// Reason why the video ends early if it is damaged or breaks off; otherwise empty.
   const std::string& damage() const;
 
   Image image(int frame) const override;
@@ -48,11 +45,11 @@ class VideoFile final : public ImageSequence {
   std::unique_ptr<State> state_;
 };
 
-/// Adds .mp4, .mov and .mkv of pictures.
+/// Adds .mp4, .mov and .mkv as formats of pictures.
 void add_video_format(OperationTable& table);
 
-/// What is to be said where pictures are written to `target` without the sound of `video`; nothing
-/// where it is kept, there is none, or `target` is no video. Throws IoError.
+/// Warning that pictures written to `target` lose the sound of `video`. Empty if the sound is kept,
+/// `video` has none, or `target` is not a video. Throws IoError.
 std::string lost_sound(const std::filesystem::path& target, const std::filesystem::path& video);
 
 }  // namespace mimetra

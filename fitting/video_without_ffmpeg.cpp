@@ -1,7 +1,7 @@
 #include "fitting/video_codec.h"
 #include "toolkit/mesh/errors.h"
 
-/// What a build without FFmpeg's libraries says where videos are asked for.
+/// Errors of a build without FFmpeg's libraries when videos are used.
 namespace mimetra {
 
 std::unique_ptr<VideoDecoder> open_video(const std::filesystem::path& path) {

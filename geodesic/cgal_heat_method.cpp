@@ -1,6 +1,6 @@
-// CGAL's heat method takes 20 s to compile: no other file of the library sees it.
+// CGAL's heat method takes 20 s to compile, so no other file of the library includes it.
 
-// Its default solver.
+// Select CGAL's default solver.
 #define CGAL_EIGEN3_ENABLED
 
 #include <array>
@@ -30,7 +30,7 @@ struct DoublePoints : OpenMesh::DefaultTraits {
 };
 using Mesh = OpenMesh::TriMesh_ArrayKernelT<DoublePoints>;
 
-/// The positions of a mesh for CGAL. Its own map for OpenMesh rounds what is written through it to
+/// Positions of a mesh for CGAL. CGAL's own property map for OpenMesh rounds written values to
 /// float.
 struct PointMap {
   using key_type = Mesh::VertexHandle;
@@ -50,7 +50,7 @@ struct PointMap {
 };
 
 [[maybe_unused]] PointMap get(boost::vertex_point_t, const Mesh& mesh) {
-  return {const_cast<Mesh*>(&mesh)};  // as CGAL's own maps: one type reads and writes
+  return {const_cast<Mesh*>(&mesh)};  // as in CGAL's own maps, one type reads and writes
 }
 
 }  // namespace
@@ -65,15 +65,16 @@ struct boost::property_map<mimetra::geodesic::Mesh, boost::vertex_point_t> {
 namespace mimetra::geodesic {
 namespace {
 
-/// Flips that CGAL may still make on this thread. Its flips never end where rounding decides anew
-/// each time between equals, as in a regular polygon that is one flat face of a model.
+/// Flips that CGAL may still make on this thread. CGAL flips forever if rounding keeps changing the
+/// choice between equals, as in a regular polygon that is one flat face of a model.
 thread_local std::size_t flips_left = 0;
 
-/// More than this many flips per edge are no progress; the worst slivers need fewer than three.
+/// Number of flips per edge beyond which they no longer progress; the worst slivers need fewer than
+/// three.
 constexpr std::size_t kFlipsPerEdge = 20;
 
-/// What breaks such ties, as a share of the mean edge length: far above rounding, far below the
-/// error of the heat method.
+/// Displacement that breaks such ties, as a share of the mean edge length. It is far above rounding
+/// and far below the error of the heat method.
 constexpr double kShake = 1e-8;
 
 struct EndlessFlips : std::runtime_error {
@@ -81,8 +82,8 @@ struct EndlessFlips : std::runtime_error {
       : std::runtime_error("intrinsic Delaunay flips do not end; use the mesh's own triangles") {}
 };
 
-/// CGAL's flips change the mesh through this function, which they find because it fits better than
-/// CGAL's template: twice in each flip. It is the only way to stop them.
+/// Limits CGAL's flips, which change the mesh through this function, twice per flip. Overload
+/// resolution prefers it to CGAL's template. There is no other way to stop the flips.
 [[maybe_unused]] void set_face(Mesh::HalfedgeHandle halfedge, Mesh::FaceHandle face, Mesh& mesh) {
   if (flips_left == 0) throw EndlessFlips();
   --flips_left;
@@ -111,18 +112,18 @@ double mean_edge_length(const SurfaceComponent& component) {
   return sum / static_cast<double>(component.triangles.size());
 }
 
-/// Positions off their place by at most `distance` per coordinate, the same in every run.
+/// Positions displaced by at most `distance` per coordinate, the same in every run.
 Positions shaken(const Positions& positions, double distance) {
   std::mt19937 generator;
   const double middle = static_cast<double>(generator.max()) / 2;
   return positions.unaryExpr([&](double x) { return x + distance * (generator() / middle - 1); });
 }
 
-/// What `use` makes of the component's mesh, or, where the flips in it do not end, of one whose
-/// vertices are off their circles by more than rounding: that leaves no equals to decide between.
+/// Result of `use` on the component's mesh. If its flips do not end, the result on a mesh with
+/// displaced vertices, which no longer has equals to decide between.
 template <typename Use>
 auto with_flips(const SurfaceComponent& component, const Surface& surface, const Use& use) {
-  // CGAL copies the mesh first, which sets the face of each half-edge once: one flip per edge.
+  // CGAL first copies the mesh, which sets the face of each half-edge once, like one flip per edge.
   const std::size_t most = 2 * (kFlipsPerEdge + 1) * surface.half_edges().n_edges();
   try {
     flips_left = most;
@@ -145,7 +146,7 @@ FlatTriangle flat_triangle(const Corners& p) {
   return {{1 / length, -along / (length * height)}, {0, 1 / height}, length * height / 2};
 }
 
-/// Of the angle at `corner`.
+/// Cotangent of the angle at `corner`; 0 without area.
 double cotangent(const Corners& p, int corner) {
   const auto at = [&p](int c) -> const OpenMesh::Vec3d& { return p[std::size_t(c % 3)]; };
   const OpenMesh::Vec3d one = at(corner + 1) - at(corner), other = at(corner + 2) - at(corner);
@@ -153,7 +154,7 @@ double cotangent(const Corners& p, int corner) {
   return sine != 0 ? one.dot(other) / sine : 0;
 }
 
-/// The entries of mass and Laplacian, triangle by triangle.
+/// Entries of mass and Laplacian, added triangle by triangle.
 class OperatorSum {
  public:
   OperatorSum(Eigen::Index rows, std::size_t triangles) : rows_(rows) {
@@ -173,7 +174,7 @@ class OperatorSum {
     const double sixth = (1.0 / 6) * (p[1] - p[0]).cross(p[2] - p[0]).norm();
     for (const VertexIndex v : row) {
       mass_.emplace_back(v, v, sixth);
-      // Lets L be factored, whose constant vectors are in its kernel: CGAL's, for each corner.
+      // CGAL's term for each corner. Without it L would be singular, as it maps constants to 0.
       constexpr double kOfCorner = 1e-8;
       laplacian_.emplace_back(v, v, kOfCorner);
     }
@@ -195,8 +196,8 @@ class OperatorSum {
   Entries mass_, laplacian_;
 };
 
-/// Operators on the faces of `mesh`. Vertices with one row are one, which joins the sheets of a
-/// surface that is not a manifold. `position` gives the corner that a half-edge points to.
+/// Operators on the faces of `mesh`. Vertices with equal rows count as one, which joins the sheets
+/// of a surface that is not a manifold. `position` returns the corner that a half-edge points to.
 template <typename RowOf, typename PositionOf>
 HeatOperators operators_on(const Mesh& mesh, Eigen::Index rows, const RowOf& row_of,
                            const PositionOf& position) {
@@ -207,7 +208,7 @@ HeatOperators operators_on(const Mesh& mesh, Eigen::Index rows, const RowOf& row
   double edges = 0;
   for (const auto face : mesh.faces()) {
     std::array<VertexIndex, 3> row;
-    std::array<double, 3> share;  // of the edge before each corner
+    std::array<double, 3> share;  // share of this face in the edge before each corner
     Corners corners;
     auto halfedge = mesh.halfedge_handle(face);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -241,7 +242,7 @@ using Intrinsic =
 
 HeatOperators intrinsic_operators(const Surface& surface, const Mesh& mesh, Eigen::Index rows) {
   const Intrinsic intrinsic(mesh);
-  // Its copy numbers the vertices anew.
+  // CGAL's copy renumbers the vertices.
   std::vector<VertexIndex> row_of(mesh.n_vertices());
   for (const auto& [copy, original] : intrinsic.v2v) {
     row_of[static_cast<std::size_t>(copy.idx())] = surface.vertex_of(original);
@@ -250,7 +251,7 @@ HeatOperators intrinsic_operators(const Surface& surface, const Mesh& mesh, Eige
       intrinsic.triangle_mesh(), rows,
       [&](auto vertex) { return row_of[static_cast<std::size_t>(vertex.idx())]; },
       [&](auto halfedge) {
-        // In the triangle's own plane; the same vertex is elsewhere in another triangle.
+        // In the triangle's own plane; each triangle has its own coordinates for a vertex.
         const auto& [x, y] = get(intrinsic.hcmap(), halfedge);
         return OpenMesh::Vec3d(x, y, 0);
       });
@@ -272,11 +273,11 @@ class CgalComponent {
                         ", and CGAL's heat method takes manifolds only; use distances by heat");
   }
 
-  /// Distance from the nearest of `sources` (N). \pre At least one source.
+  /// Distance from the nearest of `sources` (N). \pre at least one source
   Eigen::VectorXd distances(const std::vector<VertexIndex>& sources) const {
     std::unique_ptr<Query> query = idle_query();
     Eigen::VectorXd result = query->distances(sources);
-    // CGAL begins with the largest number and compares it with what may be no number.
+    // CGAL starts from the largest double and compares it with values that may be NaN.
     if (!(result.maxCoeff() < std::numeric_limits<double>::max())) {
       throw MismatchError("the heat from vertex " +
                           std::to_string(component_.vertices[sources.front()]) +
@@ -358,7 +359,7 @@ class CgalGeodesics::Implementation {
     for (SurfaceComponent& component : components_.components) {
       const std::vector<VertexIndex> vertices = component.vertices;
       methods_.push_back(std::make_unique<CgalComponent>(std::move(component)));
-      component.vertices = vertices;  // the numbering is needed from here on
+      component.vertices = vertices;  // queries need the numbering
     }
   }
 

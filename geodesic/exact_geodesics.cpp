@@ -42,8 +42,8 @@ class ExactComponent {
   Mesh mesh_;
 };
 
-/// The first of each three corners. Paths gain nothing by a face that lies in the place of another,
-/// and around each such pair all three vertices would be passages between sheets.
+/// First triangle with each set of three corners. A second one shortens no path, but would make all
+/// three vertices passages between sheets.
 Triangles without_doubles(const Triangles& triangles) {
   std::vector<Eigen::Index> kept;
   std::set<std::array<VertexIndex, 3>> known;
@@ -64,7 +64,8 @@ ExactComponent::ExactComponent(const SurfaceComponent& component)
   }
 }
 
-/// Dijkstra over the vertices where sheets touch: each passes on what it has to all its sheets.
+/// Dijkstra's algorithm over the vertices where sheets touch; each passes its distance to all its
+/// sheets.
 Eigen::VectorXd ExactComponent::distances(const std::vector<VertexIndex>& sources) const {
   Eigen::VectorXd best = distances_within_sheets(sources);
   std::vector<VertexIndex> passages;
@@ -85,7 +86,7 @@ Eigen::VectorXd ExactComponent::distances(const std::vector<VertexIndex>& source
 
 Eigen::VectorXd ExactComponent::distances_within_sheets(
     const std::vector<VertexIndex>& sources) const {
-  // CGAL's object holds the query's state, so each query has its own.
+  // CGAL's object holds the state of a query, so each query makes its own.
   ShortestPath shortest_path(mesh_);
   for (const VertexIndex source : sources) {
     for (const auto copy : surface_.copies_of(source)) shortest_path.add_source_point(copy);
@@ -94,7 +95,7 @@ Eigen::VectorXd ExactComponent::distances_within_sheets(
   for (const auto vertex : mesh_.vertices()) {
     const double distance = shortest_path.shortest_distance_to_source_points(vertex).first;
     double& known = result[surface_.vertex_of(vertex)];
-    // CGAL says -1 where no source reaches.
+    // CGAL returns -1 if no source reaches the vertex.
     if (distance >= 0) known = std::min(known, distance);
   }
   return result;

@@ -16,19 +16,20 @@ namespace {
 
 constexpr double kUnreachable = std::numeric_limits<double>::infinity();
 
-/// Heat below this share of its maximum has no direction: it decays by about e per edge and
+/// Heat below this share of its maximum has no usable direction. It decays by about e per edge and
 /// underflows at 1e-308, whatever the scale of the mesh.
 constexpr double kFaintest = 1e-250;
 
 constexpr int kLanes = HeatGeodesics::kGroup;
 using Lane = Eigen::Array<double, 1, kLanes>;
-/// One unknown a row; so many queries side by side.
+/// One row per unknown and one column per query.
 using Lanes = Eigen::Matrix<double, Eigen::Dynamic, kLanes, Eigen::RowMajor>;
-/// Rows of the component where the query of each lane starts.
+/// Rows of the component where each lane's query starts.
 using LaneSources = std::array<std::span<const VertexIndex>, kLanes>;
 
-/// The potential is the distance up to a constant, which the sources agree on only roughly; the
-/// nearest of their potentials, `zeros` (ascending), keeps every source at 0 and all else above.
+/// Distance from the nearest source for a potential, which is the distance up to a constant. The
+/// potentials of the sources, `zeros` (ascending), agree only roughly. Measuring from the nearest
+/// of them gives 0 at every source and no negative values.
 double distance_to_nearest(const std::vector<double>& zeros, double potential) {
   const auto above = std::lower_bound(zeros.begin(), zeros.end(), potential);
   if (above == zeros.begin()) return *above - potential;
@@ -36,17 +37,17 @@ double distance_to_nearest(const std::vector<double>& zeros, double potential) {
   return std::min(*above - potential, potential - *std::prev(above));
 }
 
-/// The heat method on one connected component. Vertices are rows of the component; inside, rows are
-/// in the order of elimination.
+/// The heat method on one connected component. Vertices are rows of the component; internally, rows
+/// are in elimination order.
 class HeatComponent {
  public:
   explicit HeatComponent(const HeatOperators& operators);
 
-  /// Distance from the nearest of the sources of each lane (N x kLanes). \pre Each has a source.
+  /// Distance from the nearest source of each lane (N x kLanes). \pre each lane has a source
   Lanes distances(const LaneSources& sources) const;
 
  private:
-  /// A triangle where the heat of some lanes has not been seen yet (1; 0 where it has).
+  /// A triangle that the heat of some lanes has not reached yet (1 for these lanes, else 0).
   struct Open {
     int triangle;
     Lane waiting;
@@ -55,15 +56,15 @@ class HeatComponent {
   Lanes potentials(Lanes reached) const;
   void add_divergence(const Lanes& heat, const Lane& faintest, Open& open, Lanes& result) const;
 
-  std::vector<int> place_;  // in the order of elimination
-  Triangles triangles_;     // of places
+  std::vector<int> place_;  // position of each row in the elimination order
+  Triangles triangles_;     // corners as such positions
   std::vector<FlatTriangle> flat_;
   SparseFactor heat_, poisson_;
 };
 
 HeatComponent::HeatComponent(const HeatOperators& operators)
     : triangles_(operators.triangles), flat_(operators.flat) {
-  // Both matrices have one pattern: a mass is on the diagonal only.
+  // Both matrices have one pattern, because the mass is diagonal.
   SparseFactor::Factorization factorization;
   factorization.analyzePattern(operators.heat);
   try {
@@ -98,10 +99,10 @@ Lanes HeatComponent::distances(const LaneSources& sources) const {
   return result;
 }
 
-/// Potentials whose gradients are closest to unit vectors against the heat's.
+/// Potentials whose gradients are closest to unit vectors opposite to the heat's gradients.
 ///
-/// Where the heat has faded the next round starts from all vertices it has reached: their border
-/// is a level set of the heat, that is a circle around the sources, so the direction is the same.
+/// When the heat has faded, the next round starts from all vertices that it has reached. Their
+/// border is a level set of the heat, a circle around the sources, so the direction is the same.
 Lanes HeatComponent::potentials(Lanes reached) const {
   Lanes divergence = Lanes::Zero(reached.rows(), kLanes);
   std::vector<Open> open(flat_.size());
@@ -125,18 +126,20 @@ Lanes HeatComponent::potentials(Lanes reached) const {
   return poisson_.solve<kLanes>(std::move(divergence));
 }
 
-/// Adds the integral of each corner's hat gradient times the unit vector against the heat's
-/// gradient, in the lanes that wait for it and where there is heat: the right-hand side of the
-/// Poisson system. The vector is zero where the heat is constant.
+/// Adds a triangle's part of the right-hand side of the Poisson system. For each corner it is the
+/// integral of the hat gradient times the unit vector opposite to the heat's gradient.
+///
+/// Only lanes that still wait for the triangle and have heat there are added. The unit vector is
+/// zero if the heat is constant.
 void HeatComponent::add_divergence(const Lanes& heat, const Lane& faintest, Open& open,
                                    Lanes& result) const {
-  // Smaller than any length or heat that counts; it keeps 0 / 0 away.
+  // Smaller than any relevant length or heat; avoids 0 / 0.
   constexpr double kTiny = std::numeric_limits<double>::min();
   const FlatTriangle& flat = flat_[open.triangle];
   const int* corners = triangles_.row(open.triangle).data();
   const auto corner = [&](int c) { return heat.row(corners[c]).array(); };
   const Lane warmest = corner(0).max(corner(1)).max(corner(2));
-  // Relative heat, because squares of very faint heat vanish.
+  // Relative heat, because squares of very faint heat would underflow.
   const Lane rise1 = (corner(1) - corner(0)) / warmest.max(kTiny);
   const Lane rise2 = (corner(2) - corner(0)) / warmest.max(kTiny);
   const Lane x = rise1 * flat.gradient1.x() + rise2 * flat.gradient2.x();
@@ -167,13 +170,13 @@ class HeatGeodesics::Implementation {
         throw std::runtime_error("the component of vertex " +
                                  std::to_string(component.vertices.front()) + ": " + error.what());
       }
-      // Only the numbering is needed from here on.
+      // Queries need only the numbering.
       component.positions.resize(0, 3);
       component.triangles.resize(0, 3);
     }
   }
 
-  /// Distances from the nearest of the sources of each lane, N x lanes.
+  /// Distance from the nearest source of each lane, N x lanes.
   Eigen::MatrixXd distances(const std::vector<std::span<const VertexIndex>>& lanes) const {
     Eigen::MatrixXd result =
         Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(surface_.component_of.size()),
@@ -188,10 +191,10 @@ class HeatGeodesics::Implementation {
   const SurfaceComponents& surface() const { return surface_; }
 
  private:
-  /// Up to kLanes queries, on each component those that have sources there.
+  /// Solves up to kLanes queries, on each component those with sources there.
   void solve(std::span<const std::span<const VertexIndex>> lanes,
              Eigen::Ref<Eigen::MatrixXd> result) const {
-    std::vector<std::vector<std::vector<VertexIndex>>> rows;  // of each lane and component
+    std::vector<std::vector<std::vector<VertexIndex>>> rows;  // by lane and component
     for (const auto& sources : lanes) rows.push_back(surface_.rows_of(sources));
     for (std::size_t c = 0; c < methods_.size(); ++c) {
       std::vector<Eigen::Index> here;
@@ -202,7 +205,7 @@ class HeatGeodesics::Implementation {
         here.push_back(static_cast<Eigen::Index>(lane));
       }
       if (here.empty()) continue;
-      // Lanes that nobody needs repeat the last one.
+      // Unused lanes repeat the last used one.
       std::fill(sources.begin() + here.size(), sources.end(), sources[here.size() - 1]);
       result(surface_.components[c].vertices, here) =
           methods_[c]->distances(sources).leftCols(here.size());

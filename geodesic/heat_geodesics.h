@@ -9,8 +9,8 @@
 namespace mimetra::geodesic {
 
 struct HeatOptions {
-  /// Solve on the intrinsic Delaunay triangulation (accurate also on slivers), or on the mesh as
-  /// is.
+  /// Solve on the intrinsic Delaunay triangulation, which is accurate even on slivers, instead of
+  /// the mesh itself.
   bool intrinsic_delaunay = true;
   /// Leave out triangles without area (and count them) instead of refusing the mesh.
   bool skip_degenerate = true;
@@ -19,16 +19,17 @@ struct HeatOptions {
 /// Distances along a triangle mesh by the heat method, diffusion time = mean edge length squared.
 ///
 /// The constructor factors two sparse systems per connected component; each query costs two
-/// back-substitutions. Queries are const and may run from several threads. Any set of triangles
-/// will do: heat passes across edges of more than two triangles, across vertices where sheets
-/// touch, and between triangles that run opposite ways round.
+/// back-substitutions. Queries are const and may run from several threads. Any set of triangles is
+/// accepted. Heat passes across edges of more than two triangles, across vertices where sheets
+/// touch, and between triangles that are wound against each other.
 ///
 /// [Crane, Weischedel, Wardetzky. Geodesics in Heat. ACM TOG 32(5), 2013]
 class HeatGeodesics {
  public:
-  /// Keeps no reference to the mesh. Throws std::invalid_argument that names the first triangle
-  /// with a bad index or a vertex that is not finite, and, unless options.skip_degenerate, the
-  /// first one that repeats a vertex or has no area (2 A < 1e-6 of its longest side squared).
+  /// Keeps no reference to the mesh. Throws std::invalid_argument, with the number of the first
+  /// such triangle, for a bad index or a vertex that is not finite. Unless options.skip_degenerate,
+  /// also throws it for a repeated vertex or no area (2 A < 1e-6 of the longest side squared).
+  /// Throws std::runtime_error if the system of a component cannot be factored.
   HeatGeodesics(const Positions& positions, const Triangles& triangles, const HeatOptions& = {});
   ~HeatGeodesics();
   HeatGeodesics(HeatGeodesics&&) noexcept;
@@ -39,19 +40,18 @@ class HeatGeodesics {
   Eigen::VectorXd distances(VertexIndex source) const;
 
   /// Distance from the nearest of `sources` to every vertex (N). Throws std::out_of_range, and
-  /// std::invalid_argument when there is no source.
+  /// std::invalid_argument if there is no source.
   Eigen::VectorXd distances(std::span<const VertexIndex> sources) const;
 
-  /// Distance from each of `sources` (S) to every vertex, N x S; the columns are those that one
-  /// query a source would give. kGroup of them cost little more than one. Throws std::out_of_range.
+  /// Distance from each of `sources` (S) to every vertex, N x S. Column i equals
+  /// distances(sources[i]). kGroup sources cost little more than one. Throws std::out_of_range.
   Eigen::MatrixXd distances_from_each(std::span<const VertexIndex> sources) const;
   static constexpr int kGroup = 8;
 
   /// Number of triangles left out because they have no area or repeat a vertex.
   int degenerate_triangles() const;
 
-  /// Vertices that belong to no triangle that was used, ascending; all distances there are
-  /// +infinity.
+  /// Vertices without a used triangle, ascending. All distances to and from them are +infinity.
   const std::vector<VertexIndex>& vertices_without_face() const;
 
  private:

@@ -6,26 +6,26 @@
 
 namespace mimetra::geodesic {
 
-/// A sparse symmetric system P A P^T = L D L^T, factored once, for many right-hand sides at a time.
+/// A sparse symmetric system P A P^T = L D L^T, factored once to solve for many right-hand sides.
 ///
-/// Right-hand sides lie side by side in rows, so that one pass over the factor serves them all;
-/// Eigen's own solve passes once for each.
+/// Right-hand sides are the columns of row-major matrices, so that one pass over the factor serves
+/// all of them. Eigen's own solve makes one pass for each.
 class SparseFactor {
  public:
   using Matrix = Eigen::SparseMatrix<double>;
-  /// Finds the order of elimination, which serves all matrices of one pattern.
+  /// Eigen's factorization, whose elimination order serves all matrices with the same pattern.
   using Factorization = Eigen::SimplicialLDLT<Matrix>;
 
   SparseFactor() = default;
-  /// Throws std::runtime_error where there is no factor.
+  /// Copies the factor. Throws std::runtime_error if the factorization failed.
   explicit SparseFactor(const Factorization& factorization);
 
-  /// Place of each unknown in the elimination.
+  /// Position of each unknown in the elimination order.
   const std::vector<int>& order() const { return order_; }
-  /// D, in the order of elimination.
+  /// Diagonal D in elimination order.
   const Eigen::VectorXd& pivots() const { return pivots_; }
 
-  /// The solution for `right`, both with one unknown a row, in the order of elimination.
+  /// Solution for `right`. Both have one row per unknown, in elimination order.
   /// \pre right.rows() is the system's size
   template <int Width>
   Eigen::Matrix<double, Eigen::Dynamic, Width, Eigen::RowMajor> solve(
@@ -49,8 +49,7 @@ class SparseFactor {
 
  private:
   std::vector<int> order_;
-  // L without its diagonal of ones, by columns: those of column j are entries starts_[j] to
-  // starts_[j + 1] - 1.
+  // L without its unit diagonal, by columns: column j has entries starts_[j] to starts_[j + 1] - 1.
   std::vector<int> starts_ = {0}, rows_;
   std::vector<double> values_;
   Eigen::VectorXd pivots_;

@@ -25,7 +25,7 @@ void check_vertices(const Positions& positions, const Triangles& triangles) {
   }
 }
 
-/// Why the triangle cannot be used; empty where it can.
+/// Reason why a triangle cannot be used; empty if it can.
 std::string defect(const Positions& positions, const Triangles& triangles, Eigen::Index t) {
   const VertexIndex i = triangles(t, 0), j = triangles(t, 1), k = triangles(t, 2);
   if (i == j || j == k || k == i) return "repeats a vertex";
@@ -64,7 +64,7 @@ SurfaceComponents::SurfaceComponents(const Positions& positions, const Triangles
   std::vector<Eigen::Index> sizes(static_cast<std::size_t>(connected.count), 0);
   for (Eigen::Index t = 0; t < usable.rows(); ++t) ++sizes[connected.of_vertex[usable(t, 0)]];
 
-  std::vector<int> number(sizes.size(), -1);  // of those with a triangle
+  std::vector<int> number(sizes.size(), -1);  // of components with a triangle
   for (VertexIndex vertex = 0; vertex < vertices; ++vertex) {
     const int label = connected.of_vertex[vertex];
     if (sizes[label] == 0) {

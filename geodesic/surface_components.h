@@ -8,30 +8,30 @@
 
 namespace mimetra::geodesic {
 
-/// One connected component as a mesh of its own, without degenerate triangles.
+/// One connected component as a separate mesh without degenerate triangles.
 struct SurfaceComponent {
-  /// Vertices of the whole mesh, ascending; row v of `positions` belongs to vertices[v].
+  /// Vertices in the whole mesh, ascending. Row v of `positions` belongs to vertices[v].
   std::vector<VertexIndex> vertices;
-  /// Relative to their centroid, so that a place far from the origin costs no digits.
+  /// Positions relative to their centroid, so that an offset from the origin costs no digits.
   Positions positions;
-  /// On rows of `positions`.
+  /// Triangles as rows of `positions`.
   Triangles triangles;
 };
 
 enum class Degenerate { left_out, refused };
 
-/// A mesh taken apart.
+/// A mesh split into its connected components.
 struct SurfaceComponents {
-  /// Throws std::invalid_argument that names the first triangle with a bad index or with a vertex
-  /// that is not finite, and the first degenerate one where they are refused.
+  /// Throws std::invalid_argument for a bad index, for a vertex that is not finite, and for a
+  /// degenerate triangle if these are refused. The message names the first such triangle.
   SurfaceComponents(const Positions& positions, const Triangles& triangles, Degenerate degenerate);
 
-  /// Rows of `sources` in each component. Throws std::out_of_range that names the first bad one,
-  /// and std::invalid_argument when there is none.
+  /// Rows of `sources` in each component. Throws std::out_of_range for a bad source, which the
+  /// message names, and std::invalid_argument if there is no source.
   std::vector<std::vector<VertexIndex>> rows_of(std::span<const VertexIndex> sources) const;
 
-  /// The distances (N) that `method(component, rows)` finds from rows of a component, on each one
-  /// that has a source; +infinity elsewhere. Throws as rows_of().
+  /// Distances (N) that `method(component, rows)` computes from rows of each component with a
+  /// source; +infinity on other components. Throws as rows_of().
   template <typename Method>
   Eigen::VectorXd distances(std::span<const VertexIndex> sources, const Method& method) const {
     const auto rows = rows_of(sources);
@@ -43,9 +43,9 @@ struct SurfaceComponents {
     return result;
   }
 
-  /// In the order of each one's lowest vertex.
+  /// Components in the order of their lowest vertices.
   std::vector<SurfaceComponent> components;
-  /// Component of each vertex, and its row there; -1 where no triangle holds it.
+  /// Component of each vertex, and its row there; -1 for vertices without a triangle.
   std::vector<int> component_of;
   std::vector<VertexIndex> row_of;
   int degenerate_triangles = 0;

@@ -1,4 +1,4 @@
-// A performance drives another character's blendshapes, by the regions where it moves.
+// A performance drives another character's blendshapes, using the regions where it moves.
 
 #include <iostream>
 
@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
   const MeshSequence result = actor.animate(beta, performance.times());
   if (own_files) write_sequence(result, argv[3]);
 
-  // An actor that keeps still has an error too: the deformation that did not come across.
+  // An unmoved actor also has an error: the deformation that was not transferred.
   const MeshSequence still =
       actor.animate(Eigen::MatrixXd::Zero(beta.rows(), beta.cols()), performance.times());
   const double missed = transfer_error(performance, result, regions.triangles).de_all /

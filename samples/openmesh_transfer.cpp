@@ -1,5 +1,6 @@
-// Another character follows a performance within an OpenMesh program: a mesh of quads with texture
-// coordinates and a property of its own. Regions become properties, vertices move, the rest stays.
+// Another character follows a performance in an OpenMesh program. The mesh has quads, texture
+// coordinates and a property of the application. Regions become properties and vertices move;
+// everything else is unchanged.
 
 #include <iostream>
 
@@ -13,7 +14,7 @@ using namespace mimetra;
 using Mesh = OpenMesh::PolyMesh_ArrayKernelT<>;
 using Vertex = OpenMesh::VertexHandle;
 
-/// A mesh as an application holds it.
+/// Mesh with the texture coordinates and the property of an application.
 Mesh textured(const TriMesh& shape) {
   Mesh mesh = to_openmesh<Mesh>(shape);
   mesh.request_vertex_texcoords2D();
@@ -30,7 +31,7 @@ int main() {
   const BlendshapeModel actor = head.person(Eigen::Vector4d(1, 0, 0, 0));
   const MeshSequence given = actor.animate(samples::parametric_performance().weights);
 
-  // What the application has: a mesh in every frame, and the character that is to follow.
+  // Data of the application: a mesh for every frame, and the character that follows.
   std::vector<Mesh> take;
   for (int f = 0; f < given.frames(); f += 4) {
     take.push_back(textured({Positions(given.frame(f)), given.connectivity()}));

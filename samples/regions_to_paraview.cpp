@@ -1,4 +1,4 @@
-// Where does a sequence move? Its regions as a time series for ParaView.
+// Writes the regions where a sequence moves as a time series for ParaView.
 
 #include <iostream>
 
@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
             << regions.vertices << " vertices hold " << 100 * regions.energy_share
             << " % of the motion; open " << target << " in ParaView\n";
 
-  // What ParaView will show, beside the index files, is what was found.
+  // ParaView will show the regions that were found: check every file but the indices.
   int frames = 0;
   for (const auto& file : files) {
     if (file.extension() != ".vtp") continue;

@@ -1,5 +1,5 @@
-// The operations of the command from a program of one's own: values in, values out, with progress,
-// and cancelled at will.
+// Runs an operation of the command from another program, with values as inputs and outputs, with
+// progress and with cancellation.
 
 #include <iostream>
 
@@ -32,7 +32,7 @@ int main() {
   const auto& components = std::get<Components>(outcome.outputs.at("out").front().data);
   std::cout << outcome.summary;
 
-  // A progress function that returns false ends the work.
+  // A progress function that returns false cancels the operation.
   call.context = Context().with_progress([](double share) { return share < 0.5; });
   bool cancelled = false;
   try {

@@ -1,4 +1,4 @@
-// A performance moves a mesh without expressions, which needs the same faces only.
+// A performance moves a mesh without expressions, which only needs the same faces.
 
 #include <iostream>
 
@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
       performance.with_frames(transfer.frames(performance)).with_rest(character.positions);
   if (own_files) write_sequence(result, argv[3]);
 
-  // A character that keeps still has an error too: the deformation that did not come across.
+  // An unmoved character also has an error: the deformation that was not transferred.
   const Positions& neutral = character.positions;
   const Frames one = Eigen::Map<const Frames>(neutral.data(), 1, neutral.size());
   const MeshSequence still = result.with_frames(one.replicate(result.frames(), 1));

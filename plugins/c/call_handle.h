@@ -10,26 +10,26 @@
 #include "plugins/c/value.h"
 #include "toolkit/operations/call.h"
 
-/// One operation with what goes into it, and what came out of its last run.
+/// One operation with its inputs and parameters, and the outputs of its last run.
 struct mimetra_call {
   /// Throws UsageError for an unknown operation.
   mimetra_call(mimetra_context& owner, const std::string& operation);
 
   mimetra_context& context() const { return context_; }
-  /// Throws UsageError for an unknown name or a value that the parameter cannot have; null brings
-  /// back the default.
+  /// Throws UsageError if the name is unknown or the parameter does not accept the text. Null
+  /// restores the default.
   void set(const std::string& parameter, const char* text);
-  /// Throws UsageError for an unknown input or a value of another kind.
+  /// Throws UsageError if the input is unknown or the value has another kind.
   void give(const std::string& input, std::shared_ptr<const mimetra::Value> value);
   void read(const std::string& input, const std::string& text);
-  /// Throw UsageError for an unknown output.
+  /// want() and write() throw UsageError if the output is unknown.
   void want(const std::string& output);
   void write(const std::string& output, const std::string& path, bool overwrite);
   void write_manifest(const std::string& path, bool overwrite);
 
-  /// Throws UsageError for an input that is missing, and what readers, operation and writers throw.
+  /// Throws UsageError if an input is missing, and as readers, operation and writers throw.
   void run();
-  /// None before a run.
+  /// Values of an output; empty before a run.
   const std::vector<std::shared_ptr<const mimetra::Value>>& output(const std::string& name) const;
   const std::string& report() const { return report_; }
   const std::string& summary() const { return summary_; }

@@ -67,7 +67,7 @@ const mimetra_parameter* DescribedTable::described(const Parameter& parameter,
   return &made;
 }
 
-/// Ends with NULL.
+/// List that ends with NULL.
 const mimetra_parameter* const* DescribedTable::described(const std::vector<Parameter>& all,
                                                           const std::vector<Parameter>& reading,
                                                           const std::vector<Parameter>& writing) {
@@ -94,7 +94,7 @@ void DescribedTable::describe(const Format& format) {
   made.parameters = described(format.options(), format.reading, format.writing);
   if (format.fields) made.flags |= MIMETRA_WITH_FIELDS;
   if (format.read) made.use |= MIMETRA_READING;
-  // Weights of a sequence are what operations write; its value is poses.
+  // Operations write weights of a sequence, but the value of a sequence is its poses.
   const bool is_of_value = !format.weights || format.kind == DataKind::table;
   if (format.write && is_of_value) made.use |= MIMETRA_WRITING;
 }

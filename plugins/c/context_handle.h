@@ -16,20 +16,20 @@
 
 namespace mimetra {
 
-/// A table of operations, and how the C interface describes it. Neither changes any more.
+/// A table of operations with its description for the C interface. Both are immutable.
 class DescribedTable {
  public:
-  /// Of the operations that `fill` adds.
+  /// Describes the operations that `fill` adds.
   explicit DescribedTable(const std::function<void(OperationTable&)>& fill);
   DescribedTable(const DescribedTable&) = delete;
   DescribedTable& operator=(const DescribedTable&) = delete;
 
   const OperationTable& operations() const { return table_; }
-  /// Ends with NULL.
+  /// List that ends with NULL.
   const mimetra_operation* const* list() const { return list_.data(); }
-  /// Ends with NULL.
+  /// List that ends with NULL.
   const mimetra_format* const* formats() const { return format_list_.data(); }
-  /// Null where there is none of that name.
+  /// Null if no operation has that name.
   const mimetra_operation* find(const std::string& name) const;
   const std::string& json() const { return json_; }
 
@@ -73,7 +73,7 @@ struct mimetra_context {
       message = std::move(failure.message);
       return failure.status;
     } catch (...) {
-      message.clear();  // there is no memory for one
+      message.clear();  // not enough memory for a message
       return MIMETRA_FAILED;
     }
   }
@@ -81,7 +81,7 @@ struct mimetra_context {
 
 namespace mimetra {
 
-/// Runs a function of the interface: what it throws becomes status and message.
+/// Runs a function of the interface and turns exceptions into status and message.
 template <typename Work>
 mimetra_status guarded(mimetra_context* context, Work&& work) noexcept {
   if (!context) return MIMETRA_USAGE;
@@ -93,7 +93,7 @@ mimetra_status guarded(mimetra_context* context, Work&& work) noexcept {
   }
 }
 
-/// Throws UsageError for NULL. Returns what it is given.
+/// Returns its argument. Throws UsageError if that is NULL.
 template <typename Argument>
 Argument* needed(Argument* argument, const char* name) {
   if (!argument) throw UsageError(std::string("the argument '") + name + "' is NULL");

@@ -15,7 +15,7 @@ namespace {
 
 bool is_utf8(std::string_view text) {
   try {
-    // Serialising is what refuses text that is not UTF-8.
+    // Only serialising detects text that is not UTF-8.
     return !nlohmann::json(text).dump().empty();
   } catch (const nlohmann::json::exception&) {
     return false;

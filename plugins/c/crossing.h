@@ -10,11 +10,11 @@
 
 #include "plugins/c/mimetra.h"
 
-/// What crosses the C interface: structs, text and errors.
+/// Structs, texts and errors that cross the C interface.
 namespace mimetra {
 
-/// A struct of the C interface as it was given: fields past its struct_size, which the giver's
-/// header did not have, are zero. No struct ends within a field: of such a size that field is zero.
+/// Copies a struct of the C interface. Fields past its struct_size, which an older header lacks,
+/// are zero. A field that struct_size cuts through is zero as well.
 template <typename Struct>
 Struct whole(const Struct& given) {
   static_assert(std::is_trivially_copyable_v<Struct>);
@@ -24,16 +24,16 @@ Struct whole(const Struct& given) {
   return copy;
 }
 
-/// True for UTF-8 in one line: what stands in messages, names and JSON.
+/// True for one line of UTF-8, as in messages, names and JSON.
 bool is_line(std::string_view text);
 
-/// True for lines of UTF-8, in which tabs may stand too.
+/// True for lines of UTF-8, which may contain tabs.
 bool is_text(std::string_view text);
 
-/// `text` where it is lines of UTF-8; otherwise with '?' for each byte that is not printable ASCII.
+/// Returns lines of UTF-8 unchanged. In other text, '?' replaces bytes except printable ASCII.
 std::string printable(const std::string& text);
 
-/// What an exception is on the other side of the C interface.
+/// Form of an exception in the C interface.
 struct Failure {
   mimetra_status status;
   std::string message;
@@ -41,7 +41,7 @@ struct Failure {
 
 Failure failure_of(const std::exception_ptr& error);
 
-/// Throws what `status` stands for, with `subject` (who failed) before the message.
+/// Throws the exception of `status`. The message begins with `subject`, which failed.
 [[noreturn]] void throw_failure(mimetra_status status, const std::string& subject,
                                 const std::string& message);
 

@@ -32,7 +32,7 @@ std::string shape_text(const mimetra_array& array) {
   return text;
 }
 
-/// The letters and numbers of "F x N x 3".
+/// Letters and numbers of "F x N x 3".
 std::vector<std::string> sizes_in(std::string_view shape) {
   std::vector<std::string> sizes;
   while (!shape.empty()) {
@@ -43,7 +43,7 @@ std::vector<std::string> sizes_in(std::string_view shape) {
   return sizes;
 }
 
-/// What makes an array unusable; empty for nothing.
+/// Reason why an array is unusable; empty if there is none.
 std::string problem_of(const mimetra_array& array) {
   constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
   if (array.type < MIMETRA_F64 || array.type > MIMETRA_STRING) {
@@ -62,8 +62,8 @@ std::string problem_of(const mimetra_array& array) {
   return count > 0 && !array.values ? "has no values" : "";
 }
 
-/// Sizes of what a value can do without: regions and rows, expressions, identities, landmarks,
-/// corners, polygons, triangles, energies.
+/// Sizes that may be 0: regions and rows, expressions, identities, landmarks, corners, polygons,
+/// triangles, energies.
 constexpr std::string_view kMayBeNone = "RDILCPTE";
 
 template <typename To, typename From>

@@ -12,50 +12,47 @@
 
 namespace mimetra {
 
-/// Named arrays that make up a value, as a caller hands them over.
-///
-/// Shapes are asked for as the header writes them, "F x N x 3": a letter stands for the same size
-/// in every array, a number for itself. Errors name the value and the array: UsageError for an
-/// array that is missing or of another kind, MismatchError for sizes that differ, IoError for
-/// values that cannot be.
+/// Named arrays from a caller, which make up a value. Shapes are written as in the header, "F x N x
+/// 3". A letter is a size that all arrays share, and a number is a fixed size. Errors name the
+/// value and the array. Functions throw UsageError if an array is missing or has another type or
+/// rank, MismatchError if sizes differ, and IoError for impossible values.
 class GivenArrays {
  public:
-  /// `subject` is what the value is called in messages. Throws UsageError for an array that is
-  /// none.
+  /// `subject` names the value in messages. Throws UsageError for an invalid array.
   GivenArrays(std::string subject, const mimetra_array* const* arrays);
 
   const std::string& subject() const { return subject_; }
-  /// In the order they came.
+  /// Arrays in the order of the caller.
   const std::vector<mimetra_array>& all() const { return arrays_; }
-  /// By name; fields, which have a location, are not meant here or below.
+  /// Looks up an array by name. Here and below, fields, which have a location, are ignored.
   bool has(std::string_view name) const { return find(name) != nullptr; }
-  /// Empty where there is none of that name.
+  /// Empty if there is no such array.
   std::vector<std::int64_t> shape(std::string_view name) const;
-  /// The size that a letter stands for. \pre an array with it was asked for
+  /// Size for a letter. \pre An array with that letter was read.
   int size(char letter) const { return static_cast<int>(sizes_.at(letter).first); }
-  /// Says what a letter stands for before any array does.
+  /// Fixes the size for a letter before an array does. `where` is its origin for messages.
   void set_size(char letter, int size, const std::string& where);
 
-  /// Rows by the first size, columns by all others.
+  /// Rows are the first size, columns the product of all others.
   Frames numbers(std::string_view name, std::string_view shape, bool finite = true);
-  /// One of all().
+  /// Reads an array out of all().
   Frames numbers(const mimetra_array& array, std::string_view shape, bool finite);
   Eigen::VectorXd vector(std::string_view name, std::string_view shape, bool finite = true);
   Positions positions(std::string_view name);
   std::vector<int> integers(std::string_view name, std::string_view shape);
   std::vector<std::uint8_t> bytes(std::string_view name, std::string_view shape);
   std::vector<std::string> strings(std::string_view name, std::string_view shape);
-  /// The only string of an array, of any number of lines.
+  /// Only string of an array, which may have several lines.
   std::string text(std::string_view name);
 
-  /// Throws UsageError for an array that nothing asked for, unless it is in `shown`: those that
-  /// values of the kind show besides.
+  /// Throws UsageError for an array that nothing has read, unless its name is in `shown`. Those are
+  /// the arrays that values of the kind only show.
   void check_all_used(const std::set<std::string, std::less<>>& shown) const;
 
  private:
   const mimetra_array* find(std::string_view name) const;
   const mimetra_array& get(std::string_view name, std::string_view shape);
-  /// Checks the shape, and keeps in mind that the array was asked for.
+  /// Checks the shape and marks the array as read.
   void match(const mimetra_array& array, std::string_view shape);
   Frames values_of(const mimetra_array& array, bool finite) const;
   [[noreturn]] void refuse_location(std::string_view name) const;
@@ -67,7 +64,7 @@ class GivenArrays {
   std::set<const mimetra_array*> used_;
 };
 
-/// True for two arrays that one value cannot have both: of one name, on the same part of the mesh.
+/// True if two arrays exclude each other: same name, same part of the mesh.
 bool is_same_place(const mimetra_array& a, const mimetra_array& b);
 
 }  // namespace mimetra

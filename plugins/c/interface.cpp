@@ -15,7 +15,6 @@ namespace {
 
 constexpr const char* kNoHandle = "the handle is NULL";
 
-/// A new handle to a value.
 mimetra_data* handle(std::shared_ptr<const Value> value) {
   return new mimetra_data{std::move(value)};
 }
@@ -24,7 +23,7 @@ mimetra_data* handle(NamedData named) {
   return handle(std::make_shared<const Value>(std::move(named)));
 }
 
-/// Says what was noticed of a value that was made, but for what was said already.
+/// Logs the notes of a new value, except notes that were logged before.
 void say_notes(const mimetra_context& context, const NamedData& made,
                const std::vector<std::string>& said) {
   if (!context.log) return;
@@ -180,7 +179,7 @@ void free_call(mimetra_call* call) noexcept {
   delete call;
 }
 
-/// The context whose message describes a call's errors.
+/// Context that gets the messages about a call's errors.
 mimetra_context* context_of(const mimetra_call* call) {
   return call ? &call->context() : nullptr;
 }

@@ -7,16 +7,16 @@
 
 namespace mimetra {
 
-/// The functions of mimetra.h. Its contexts have the toolkit's operations.
+/// Functions of mimetra.h, with contexts that contain the toolkit's operations.
 const mimetra_interface& toolkit_interface();
 
-/// The same with contexts that `new_context` makes, for the one symbol of a library; null for
-/// another version than that of mimetra.h. A program has one such function.
+/// Functions of a library with its own `new_context`. Returns null if `version` is not the version
+/// of mimetra.h. A program calls this with only one `new_context`.
 const mimetra_interface* library_interface(uint32_t version,
                                            decltype(mimetra_interface::new_context) new_context);
 
-/// Makes a context with the operations that `fill` adds; what it returns goes to the log as
-/// warnings.
+/// Makes a context with the operations that `fill` adds. The lines that `fill` returns go to the
+/// log as warnings.
 mimetra_status make_context(const std::function<std::vector<std::string>(OperationTable&)>& fill,
                             mimetra_log log, void* user, mimetra_context** context) noexcept;
 

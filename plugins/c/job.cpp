@@ -14,13 +14,13 @@ using namespace mimetra;
 
 namespace {
 
-/// The sequence of a value that has one; null for others.
+/// Sequence of a value; null for values of other kinds.
 const MeshSequence* sequence_of(const Data& data) {
   const auto* shown = std::get_if<FieldSequence>(&data);
   return shown ? &shown->sequence() : nullptr;
 }
 
-/// Diameter of the rest pose of what has one.
+/// Diameter of the rest pose; empty for values without one.
 std::optional<double> diameter_of(const Data& data) {
   if (const MeshSequence* sequence = sequence_of(data)) return sequence->diameter();
   if (const auto* components = std::get_if<Components>(&data)) {
@@ -38,8 +38,7 @@ mimetra_job::mimetra_job(const Operation& operation, const Invocation& invocatio
                          std::shared_ptr<const DescribedTable> table)
     : operation_(operation), invocation_(invocation), context_{std::move(table)} {
   context_.log = invocation.log;
-  // The user can cancel the toolkit's operations that the plugin calls. Their progress is not
-  // shown.
+  // The user can cancel the toolkit's operations that the plugin calls; their progress is hidden.
   context_.context =
       Context().with_threads(invocation.context.threads()).with_progress([this](double) {
         return goes_on();
@@ -143,7 +142,7 @@ void mimetra_job::output(const std::string& name, const NamedData& value) {
   NamedData& made = outcome_.outputs[name].emplace_back(value);
   auto* regions = std::get_if<RegionData>(&made.data);
   if (!regions || !regions->faces) return;
-  // They are shown on a sequence that the operation was given, as the toolkit's own are.
+  // Regions are shown on a sequence among the inputs, like the toolkit's own regions.
   const MeshSequence* mesh = given_mesh(*regions->faces, outcome_.outputs[name].size() - 1);
   if (mesh) regions->fields = {*mesh, fields_of(regions->regions), true};
 }

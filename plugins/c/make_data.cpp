@@ -60,7 +60,7 @@ Connectivity connectivity_of(GivenArrays& given, int vertices) {
   }
 }
 
-/// The faces given, or those of `base`.
+/// Given faces, or otherwise the faces of `base`.
 std::shared_ptr<const Connectivity> faces_of(
     GivenArrays& given, int vertices, const std::shared_ptr<const Connectivity>& base = nullptr) {
   const bool has_faces = given.has("face_sizes") || given.has("corners") || given.has("triangles");
@@ -77,7 +77,7 @@ std::shared_ptr<const Connectivity> faces_of(
 
 using Base = std::shared_ptr<const Connectivity>;
 
-/// Seconds, which rise.
+/// Times in seconds, ascending.
 Eigen::VectorXd times_of(GivenArrays& given) {
   Eigen::VectorXd times = given.vector("times", "F");
   for (Eigen::Index f = 1; f < times.size(); ++f) {
@@ -110,7 +110,7 @@ ShapeBasis basis_of(GivenArrays& given, const std::string& shapes, const std::st
   const std::string size(1, letter);
   ShapeBasis basis{{}, Eigen::MatrixXd(3 * given.size('N'), 0)};
   if (!given.has(shapes) && !given.has(names)) return basis;
-  // Column j of the one is row j of the other.
+  // Column j of the basis is row j of the array.
   basis.displacements = given.numbers(shapes, size + " x N x 3").transpose();
   basis.names = given.strings(names, size);
   return basis;
@@ -154,7 +154,7 @@ Components components_of(GivenArrays& given) {
   return components;
 }
 
-/// The field `weight` of regions with a soft border, which is made of it; null without.
+/// Field `weight` of regions with a soft border; null without it.
 const mimetra_array* weights_among(const GivenArrays& given) {
   for (const mimetra_array& array : given.all()) {
     if (array.location == MIMETRA_ON_VERTICES && std::string_view(array.name) == "weight") {
@@ -188,7 +188,7 @@ Field field_of(GivenArrays& given, const mimetra_array& array) {
     field.location = Field::Location::triangles;
   }
   const std::string rows = array.location == MIMETRA_ON_TRIANGLES ? "T" : "N";
-  // Each field has a number of columns of its own.
+  // Each field has its own number of columns.
   const std::string columns = array.rank == 2 ? " x " + std::to_string(array.shape[1]) : "";
   if (columns == " x 0") {
     throw UsageError(given.subject() + ": array '" + field.name + "' has no columns");
@@ -293,7 +293,7 @@ Data data_of(mimetra_kind kind, GivenArrays& given, const Base& base) {
   }
 }
 
-/// What values of a kind show, but are not made of.
+/// Arrays that values of a kind show but are not made from.
 Names shown_only(mimetra_kind kind, const GivenArrays& given) {
   Names names;
   if (kind == MIMETRA_REGIONS) {
@@ -312,7 +312,7 @@ std::string subject_of(mimetra_kind kind, const std::string& name) {
   return name.empty() ? text : name;
 }
 
-/// What is odd about a value, as is said of one that is read from a file.
+/// Notes on a value, like the notes on a value from a file.
 std::vector<std::string> notes_on(const NamedData& made, const std::string& subject) {
   std::vector<std::string> notes;
   if (const auto* sequence = std::get_if<FieldSequence>(&made.data)) {
@@ -327,7 +327,7 @@ std::vector<std::string> notes_on(const NamedData& made, const std::string& subj
   return notes;
 }
 
-/// What no array shows.
+/// Connectivity of a value, which no array shows; null if it has none.
 Base hidden_connectivity(const Data& data) {
   if (const auto* shown = std::get_if<FieldSequence>(&data)) {
     return shown->frames->shared_connectivity();
@@ -340,13 +340,13 @@ Base hidden_connectivity(const Data& data) {
   return nullptr;
 }
 
-/// Gives a value derived of `base` what no array shows.
+/// Copies properties of `base` that no array shows to a value derived from it.
 void keep_hidden(const NamedData& base, NamedData& made) {
   if (auto* sequence = std::get_if<FieldSequence>(&made.data)) {
     made.origin.model_driven = base.origin.model_driven;
     sequence->displacement = std::get<FieldSequence>(base.data).displacement;
   } else if (std::holds_alternative<ModelData>(made.data)) {
-    // What else its folder holds is about its vertices.
+    // Other contents of the model's folder belong to its vertices.
     if (hidden_connectivity(made.data) == hidden_connectivity(base.data)) {
       made.origin.path = base.origin.path;
     }
@@ -404,7 +404,7 @@ NamedData derived_data(const NamedData& base, const mimetra_array* const* arrays
                          face_names().contains(array.name);
     const bool is_changed = std::ranges::any_of(
         changes.all(), [&](const mimetra_array& other) { return is_same_place(array, other); });
-    // Weights are of the regions that they came with.
+    // Weights belong to the regions that they came with.
     const bool is_old_weight =
         kind == MIMETRA_REGIONS && changes.has("masks") && std::string_view(array.name) == "weight";
     if (!is_face && !is_changed && !is_old_weight) all.push_back(&array);

@@ -5,15 +5,15 @@
 
 namespace mimetra {
 
-/// A kind of the header. Throws UsageError for what is none.
+/// Converts a kind of mimetra.h. Throws UsageError for an unknown kind.
 DataKind kind_of(mimetra_kind kind);
 
-/// A value of named arrays, as mimetra.h lists them by kind. Throws UsageError for arrays of
-/// another shape, or that the kind does not know; MismatchError where they contradict each other;
-/// IoError for values that cannot be. What is odd about it is in its origin's notes.
+/// Makes a value from named arrays, which mimetra.h lists for each kind. Throws UsageError for
+/// unknown arrays or wrong shapes, MismatchError if arrays contradict each other, and IoError for
+/// impossible values. Notes in the origin describe oddities.
 NamedData made_data(mimetra_kind kind, const std::string& name, const mimetra_array* const* arrays);
 
-/// `base` with these arrays in place of its own. Throws as made_data.
+/// Copies `base` and replaces some of its arrays. Throws as made_data().
 NamedData derived_data(const NamedData& base, const mimetra_array* const* arrays);
 
 }  // namespace mimetra

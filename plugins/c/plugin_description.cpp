@@ -22,7 +22,7 @@ namespace mimetra {
 
 namespace {
 
-/// Choices are typed in shells too: letters, digits, '-', '_' and '.'.
+/// Choices are also typed in shells, so they contain only letters, digits, '-', '_' and '.'.
 std::string choice_of(const char* choice, const std::string& what) {
   const std::string_view text = choice;
   const auto fits = [](unsigned char c) {
@@ -35,7 +35,7 @@ std::string choice_of(const char* choice, const std::string& what) {
   return std::string(text);
 }
 
-/// Names are typed as commands and options: small letters, digits and '-'.
+/// Names are typed as commands and options, so they contain only small letters, digits and '-'.
 std::string name_of(const char* name, const std::string& what) {
   const std::string_view text = name ? name : "";
   const auto fits = [](char c) {
@@ -49,7 +49,7 @@ std::string name_of(const char* name, const std::string& what) {
   return std::string(text);
 }
 
-/// One line of text; empty for none.
+/// One line of text; empty for NULL.
 std::string line_of(const char* text, const std::string& what) {
   const std::string_view line = text ? text : "";
   if (!is_line(line)) throw UsageError(what + ": its text is no line of UTF-8");
@@ -94,12 +94,12 @@ Parameter parameter_of(const mimetra_parameter& described) {
   return parameter;
 }
 
-/// What every command takes besides what its operation declares.
+/// Options of every command.
 constexpr std::array<std::string_view, 13> kTaken = {
     "h",    "help",     "q",       "quiet",  "v",     "verbose", "o",
     "json", "progress", "threads", "config", "force", "dry-run"};
 
-/// Throws UsageError where a name is an option of every command.
+/// Throws UsageError if a name is an option of every command.
 void check_not_taken(const std::string& name) {
   if (std::ranges::find(kTaken, name) == kTaken.end()) return;
   throw UsageError("the name '" + name + "' is an option of every command");
@@ -111,17 +111,17 @@ void for_each(const Struct* const* list, Visit visit) {
   for (; list && *list; ++list) visit(whole(**list));
 }
 
-/// A function of a plugin, ready to be run as an operation.
+/// Function of a plugin that runs as an operation.
 struct PluginFunction {
   mimetra_run run;
   void* user;
-  /// In messages: "the plugin: the operation".
+  /// "the plugin: the operation", for messages.
   std::string subject;
-  /// What its runs may call.
+  /// Operations that a run may call.
   std::shared_ptr<const DescribedTable> toolkit;
 
-  /// Runs it as `operation`. What it does wrong ends the run with an exception that names it, and
-  /// changes nothing else.
+  /// Runs the function as `operation`. Errors of the plugin end the run with an exception that
+  /// names the plugin, and have no other effect.
   Outcome operator()(const Operation& operation, const Invocation& invocation) const {
     mimetra_job job(operation, invocation, toolkit);
     mimetra_status status = MIMETRA_FAILED;
@@ -164,7 +164,7 @@ void check_names(const Operation& operation) {
   for (const Parameter& parameter : operation.parameters) check_not_taken(parameter.name);
 }
 
-/// A command's words end where a repeated input begins.
+/// On the command line, a repeated input takes all remaining words.
 void check_repeated(const Operation& operation) {
   bool ended = false;
   for (const Input& input : operation.inputs) {
@@ -213,10 +213,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// As its functions know them.
+/// Names that functions of formats use for the file and the value.
 constexpr auto kPath = "path", kValue = "value";
 
-/// ".mesh": what the names of its files end in.
+/// Ending of file names, as ".mesh".
 std::string extension_of(const char* extension, const std::string& what) {
   const std::string text = line_of(extension, what);
   const auto fits = [](char c) {
@@ -229,7 +229,7 @@ std::string extension_of(const char* extension, const std::string& what) {
   return text;
 }
 
-/// One run of a function: the file and the options that it has.
+/// Input of one run: the file and its options.
 Invocation invocation_of(const std::string& path, const std::vector<Parameter>& options,
                          const Parameters& given, const Context& context) {
   std::vector<Parameter> declared = options;
@@ -244,7 +244,7 @@ Invocation invocation_of(const std::string& path, const std::vector<Parameter>& 
   return invocation;
 }
 
-/// The value with all frames, as functions of plugins see it.
+/// Loads all frames of a value, since functions of plugins cannot stream.
 Data in_memory(const Data& data, const Context& context) {
   const auto* streamed = std::get_if<FieldSequence>(&data);
   if (!streamed || streamed->is_in_memory()) return data;
@@ -252,7 +252,7 @@ Data in_memory(const Data& data, const Context& context) {
                        streamed->displacement);
 }
 
-/// What the one who reads it asked for.
+/// Drops data that the reader did not request, and checks the number of vertices.
 void fit_to(const ReadRequest& request, const std::string& text, Data& data) {
   if (auto* sequence = std::get_if<FieldSequence>(&data); sequence && !request.fields) {
     sequence->fields.clear();

@@ -7,17 +7,17 @@
 #include "toolkit/operations/format.h"
 #include "toolkit/operations/operation.h"
 
-/// Operations and formats of plugins, from their descriptions.
+/// Converts descriptions of operations and formats by plugins.
 namespace mimetra {
 
-/// An operation of a plugin as one of the table, under its name. What it does wrong ends its run
-/// with an exception that names it, and changes nothing else. `toolkit` is what its runs may call.
-/// Throws UsageError that says what is wrong with the description.
+/// Makes an operation from a plugin's description. `toolkit` has the operations that its runs may
+/// call. Errors of the plugin end its run with an exception that names the operation, and have no
+/// other effect. Throws UsageError if the description is wrong.
 Operation plugin_operation(const mimetra_operation& described, const std::string& plugin,
                            std::shared_ptr<const DescribedTable> toolkit);
 
-/// A format of a plugin as one of the table. `toolkit` is what its functions may call. Throws
-/// UsageError that says what is wrong with the description.
+/// Makes a format from a plugin's description. `toolkit` has the operations that its functions may
+/// call. Throws UsageError if the description is wrong.
 Format plugin_format(const mimetra_format& described, const std::string& plugin,
                      const std::shared_ptr<const DescribedTable>& toolkit);
 

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path folder_of_installation() {
-  // From the program in bin, or a library in lib or a host's folder below it.
+  // The binary may be in bin, in lib, or in a host's folder below lib.
   constexpr int kLevels = 5;
   const fs::path binary = this_binary();
   fs::path folder = binary.parent_path();
@@ -39,17 +39,17 @@ std::vector<fs::path> libraries_in(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     std::error_code error;
     const bool is_library = entry.path().extension() == ".so";
-    // A link that leads nowhere is reported; what is not a file at all is none of ours.
+    // Reports links that lead nowhere, and ignores everything else that is not a file.
     if (is_library && (entry.is_regular_file(error) || error)) files.push_back(entry.path());
   }
   std::ranges::sort(files);
   return files;
 }
 
-/// What a library says it is. Throws UsageError where it is no plugin of this version.
+/// Loads the description of a plugin. Throws UsageError for other libraries and versions.
 mimetra_plugin loaded(const fs::path& file) {
-  // With all symbols, so that one that is missing ends this and not a later run. Never unloaded:
-  // what it threw or registered for the end of the process may still be needed.
+  // RTLD_NOW reports missing symbols here instead of in a later run. The library stays loaded,
+  // because its exceptions and exit handlers may be needed until the process ends.
   void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!library) throw UsageError(dlerror());
   void* symbol = dlsym(library, "mimetra_get_plugin");
@@ -90,7 +90,7 @@ std::vector<std::string> add_plugins(OperationTable& table, const std::vector<fs
   std::vector<std::string> problems;
   std::set<fs::path> seen;
   std::shared_ptr<const DescribedTable> toolkit;
-  // Runs one step; what it throws is a problem of `place`.
+  // Runs a step and reports what it throws as a problem of `place`.
   const auto attempt = [&problems](const fs::path& place, const auto& step) {
     try {
       step();
@@ -109,7 +109,7 @@ std::vector<std::string> add_plugins(OperationTable& table, const std::vector<fs
       attempt(file, [&] { table.add(plugin_operation(whole(**list), plugin.name, toolkit)); });
     }
   };
-  // Plugins may fill what they describe in mimetra_get_plugin().
+  // Plugins may fill in their descriptions in mimetra_get_plugin().
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
   for (const fs::path& folder : folders) {

@@ -8,17 +8,17 @@
 
 namespace mimetra {
 
-/// Where plugins are looked for: the folders of MIMETRA_PLUGIN_PATH, separated by ':', and
-/// lib/mimetra/plugins of the installation that this code runs from, where there is one.
+/// Folders that are searched for plugins: the folders of MIMETRA_PLUGIN_PATH, separated by ':',
+/// then lib/mimetra/plugins of the running installation, if it exists.
 std::vector<std::filesystem::path> plugin_folders();
 
-/// True where nobody can have put anything into `folder` but root and the owner of `binary`, so
-/// that what lies above a program that was copied to a shared place is not run.
+/// True if root or the owner of `binary` owns `folder`, and it is not world-writable. This keeps a
+/// program in a shared place from loading what others put above it.
 bool is_of_installation(const std::filesystem::path& folder, const std::filesystem::path& binary);
 
-/// Adds the operations and formats of all plugins (*.so) in these folders, in the order of folders
-/// and file names. Whatever cannot be used is left out, and the result says what and why, a line
-/// each. Plugins stay loaded until the process ends.
+/// Adds the operations and formats of all plugins (*.so) in these folders, ordered by folder and
+/// file name. Skips what cannot be used and returns one line about each problem. Plugins stay
+/// loaded until the process ends.
 std::vector<std::string> add_plugins(OperationTable& table,
                                      const std::vector<std::filesystem::path>& folders);
 

@@ -1,4 +1,4 @@
-// The one symbol of libmimetra_c.
+// Defines mimetra_get_interface(), the only symbol of libmimetra_c.
 
 #include "plugins/c/interface.h"
 #include "plugins/c/plugins.h"

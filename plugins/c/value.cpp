@@ -15,7 +15,7 @@ namespace mimetra {
 
 namespace {
 
-/// A matrix row after row.
+/// Values of a matrix, row after row.
 std::vector<double> by_rows(const Eigen::MatrixXd& matrix) {
   std::vector<double> values(static_cast<std::size_t>(matrix.size()));
   Eigen::Map<Frames>(values.data(), matrix.rows(), matrix.cols()) = matrix;
@@ -44,7 +44,7 @@ const mimetra_array* ShownArrays::find(const std::string& name) const {
 }
 
 void ShownArrays::add(const char* name, int type, Shape shape, const void* values, int location) {
-  // Empty arrays have a place too: many languages take no null pointer.
+  // Empty arrays have an address as well, because many languages do not accept a null pointer.
   static const double nothing = 0;
   mimetra_array array{};
   array.struct_size = sizeof array;
@@ -113,7 +113,7 @@ void ShownArrays::show(const MeshSequence& sequence) {
 
 void ShownArrays::show_basis(const ShapeBasis& basis, const char* shapes, const char* names) {
   if (basis.size() == 0) return;
-  // Column after column in memory, which is shape after shape.
+  // The matrix is stored by columns, and each column is a shape.
   add(shapes, MIMETRA_F64, {basis.size(), basis.displacements.rows() / 3, 3},
       basis.displacements.data());
   add_strings(names, basis.names);
@@ -304,7 +304,7 @@ const std::string& Value::json() const {
     const std::lock_guard lock(mutex_);
     if (json_) return *json_;
   }
-  // Not while it is locked, because it asks for the arrays.
+  // json_of() locks the mutex when it asks for the arrays.
   std::string text = json_of(*this);
   const std::lock_guard lock(mutex_);
   if (!json_) json_ = std::move(text);
@@ -313,7 +313,7 @@ const std::string& Value::json() const {
 
 namespace {
 
-/// Replaces what exists; no parameter of any operation.
+/// Option to replace existing files. It is not a parameter of any operation.
 const Parameter kForce = {"force", ParameterKind::flag, false, "replace what an earlier run wrote"};
 
 Parameters parameters_of(std::vector<Parameter> declared, const char* const* settings) {

@@ -15,8 +15,8 @@
 
 namespace mimetra {
 
-/// A value as named arrays, which mimetra.h lists by kind. Points into the value, which must
-/// outlive it, wherever its memory is in order; holds copies of the rest.
+/// A value as named arrays, which mimetra.h lists for each kind. Points into the value, which must
+/// outlive it, if the memory layout matches, and copies the rest.
 class ShownArrays {
  public:
   explicit ShownArrays(const Data& data);
@@ -24,9 +24,9 @@ class ShownArrays {
   ShownArrays& operator=(const ShownArrays&) = delete;
 
   const std::deque<mimetra_array>& arrays() const { return arrays_; }
-  /// The same as a list that ends with NULL.
+  /// The same arrays as a list that ends with NULL.
   const mimetra_array* const* list() const { return list_.data(); }
-  /// Null where there is none of that name.
+  /// Null if no array has that name.
   const mimetra_array* find(const std::string& name) const;
 
  private:
@@ -45,7 +45,7 @@ class ShownArrays {
   void show(const MeshSequence& sequence);
   void show(const Connectivity& faces);
   void show(const Field& field);
-  /// As pictures draw each region, by the field that says which is the strongest.
+  /// Colours of the regions, as in pictures, from the field with the strongest region.
   void show_colors(const Field& strongest, const Regions& regions, const Triangles& triangles);
   void show_basis(const ShapeBasis& basis, const char* shapes, const char* names);
 
@@ -70,7 +70,7 @@ class ShownArrays {
   std::deque<Image> images_;
 };
 
-/// A value that never changes, with its arrays and its JSON, which are made when somebody asks.
+/// An immutable value. Its arrays and its JSON are made on demand.
 class Value {
  public:
   explicit Value(NamedData named) : named_(std::move(named)) {}
@@ -79,9 +79,9 @@ class Value {
   mimetra_kind kind() const {
     return static_cast<mimetra_kind>(named_.data.index()) + MIMETRA_SEQUENCE;
   }
-  /// May be called from several threads.
+  /// Thread-safe.
   const ShownArrays& arrays() const;
-  /// Regions, tables and fits as their files hold it, others by their arrays.
+  /// Contents of the file for regions, tables and fits; a list of the arrays for other kinds.
   const std::string& json() const;
 
  private:
@@ -91,19 +91,19 @@ class Value {
   mutable std::optional<std::string> json_;
 };
 
-/// A value of a file, with the parameters of reading that kind in `settings`: "NAME=VALUE", ended
-/// by NULL. Throws UsageError for a setting that is none, and what the readers throw.
+/// Reads a value from a file. `settings` are parameters of reading that kind, "NAME=VALUE", and end
+/// with NULL. Throws UsageError for a bad setting, and as the readers throw.
 NamedData loaded_data(const mimetra_context& context, DataKind kind, const std::string& text,
                       const char* const* settings);
 
-/// Writes a value, with the parameters of writing its kind, and "force=true". Throws UsageError for
-/// a setting that is none, or a path whose extension nothing writes; what the writers throw.
+/// Writes a value. `settings` are parameters of writing its kind, and "force=true". Throws
+/// UsageError for a bad setting or an extension without a writer, and as the writers throw.
 void write_data(const mimetra_context& context, const Data& data, const std::string& path,
                 const char* const* settings);
 
 }  // namespace mimetra
 
-/// What the header calls a value: one of any number of handles to it.
+/// Handle to a value. Any number of handles can share one.
 struct mimetra_data {
   std::shared_ptr<const mimetra::Value> value;
 };

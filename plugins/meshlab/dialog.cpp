@@ -12,7 +12,7 @@ namespace {
 
 constexpr char kFurtherOptions[] = "options";
 
-/// The operation's own parameters, and of those of files the ones that say how a sequence is read.
+/// Parameters of the operation itself and of reading files.
 std::vector<const mimetra_parameter*> parameters_of(const mimetra_operation& operation) {
   std::vector<const mimetra_parameter*> parameters;
   for (auto parameter = operation.parameters; *parameter; ++parameter) {
@@ -29,7 +29,7 @@ const mimetra_parameter* find_parameter(const mimetra_operation& operation,
   return nullptr;
 }
 
-/// Optional inputs, or outputs but documents, which show files not written here.
+/// Optional inputs or outputs, except documents, which show files that are not written here.
 std::vector<std::string> optional_ports(const mimetra_port* const* ports) {
   std::vector<std::string> names;
   for (; *ports; ++ports) {
@@ -43,7 +43,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Everything that may stand among the further options: what has no row.
+/// Names that further options accept: everything without a row.
 std::vector<std::string> option_names(const mimetra_operation& operation,
                                       const RichParameterList& rows) {
   std::vector<std::string> names = optional_ports(operation.inputs);
@@ -78,7 +78,7 @@ QString help_of(const mimetra_parameter& parameter) {
   return help;
 }
 
-/// The kind of row: what may be empty, and whatever MeshLab has no field for, is text.
+/// Kind of a row: text for values that may be empty or for which MeshLab has no field.
 mimetra_parameter_kind row_kind(const mimetra_parameter& parameter) {
   return parameter.fallback ? parameter.kind : MIMETRA_TEXT;
 }
@@ -117,7 +117,7 @@ std::string choice_text(const mimetra_parameter& parameter, int index) {
   return choices[index].toStdString();
 }
 
-/// What stands in the parameter's row; empty for its default.
+/// Value in the parameter's row; empty for the default.
 std::string value_text(const mimetra_parameter& parameter, const RichParameterList& rows) {
   const QString name = parameter.name;
   const std::string fallback = parameter.fallback ? parameter.fallback : "";
@@ -143,7 +143,7 @@ std::string value_text(const mimetra_parameter& parameter, const RichParameterLi
   return text == fallback ? std::string() : text;
 }
 
-/// "--rho 5 --signed" and "--rho=5", as names and values.
+/// Splits "--rho 5 --signed" and "--rho=5" into names and values.
 std::vector<Setting> further_options(const mimetra_operation& operation,
                                      const RichParameterList& rows) {
   if (!rows.hasParameter(kFurtherOptions)) return {};
@@ -176,7 +176,7 @@ std::vector<Setting> further_options(const mimetra_operation& operation,
   return options;
 }
 
-/// Outputs that are always made and that are files.
+/// Required outputs that are files.
 std::vector<const mimetra_port*> needed_files(const mimetra_operation& operation) {
   std::vector<const mimetra_port*> files;
   for (auto output = operation.outputs; *output; ++output) {

@@ -8,10 +8,10 @@ using namespace mimetra_meshlab;
 
 namespace {
 
-/// MeshLab's dialogs do not scroll: more parameters are further options.
+/// Maximum number of rows: MeshLab's dialogs do not scroll. The rest are further options.
 constexpr int kMostRows = 8;
 
-/// Rows beside those of inputs, outputs and parameters, whose names have no capitals.
+/// Rows besides inputs, outputs and parameters, whose names are in small letters.
 constexpr char kField[] = "Field";
 constexpr char kManifest[] = "Manifest";
 
@@ -41,7 +41,7 @@ void add_transfer_rows(const mimetra_operation& operation, RichParameterList& ro
   add_further_options(operation, rows);
 }
 
-/// What layers stand for.
+/// Inputs that layers can provide.
 const mimetra_port* frames_input(const mimetra_operation& operation) {
   return needed_input(operation, MIMETRA_SEQUENCE);
 }
@@ -56,14 +56,14 @@ bool makes(const mimetra_operation& operation, mimetra_kind kind) {
   return false;
 }
 
-/// False where a model is made: layers have no expressions.
+/// False if the operation makes a model, because layers have no expressions.
 bool begins_with_mesh(const mimetra_operation& operation) {
   const mimetra_port* first = *operation.inputs;
   return first && !makes(operation, MIMETRA_MODEL) &&
          (first == frames_input(operation) || first == mesh_input(operation));
 }
 
-/// True for an operation whose sequence is made for what is shown on it.
+/// True for an operation that makes a sequence for the fields on it.
 bool makes_fields(const mimetra_operation& operation) {
   for (auto output = operation.outputs; *output; ++output) {
     if (is_needed(**output) && has_fields(**output)) return true;
@@ -124,7 +124,7 @@ std::string name_of(const MeshModel& layer) {
   return layer.label().toStdString();
 }
 
-/// The selected vertices, as the operation takes them.
+/// Selected vertices in the format of the operation.
 std::string selected_vertices(const MeshModel& layer) {
   std::string list;
   for (std::size_t i = 0; i < layer.cm.vert.size(); ++i) {
@@ -137,7 +137,7 @@ std::string selected_vertices(const MeshModel& layer) {
   return list;
 }
 
-/// "mesh 0007" for mesh.ply: MeshLab does not show what stands after the point.
+/// "mesh 0007" for mesh.ply, since MeshLab hides the part after the point.
 std::string numbered(const std::string& name, std::int64_t index) {
   const QString base = QFileInfo(QString::fromStdString(name)).completeBaseName();
   return QString("%1 %2").arg(base).arg(index, 4, 10, QChar('0')).toStdString();
@@ -258,7 +258,7 @@ bool FilterMimetra::applyFilter(QAction* action, MeshDocument& document,
     (this->*filter(action).run)(*filter(action).operation, document, rows);
     return true;
   } catch (const std::exception& error) {
-    // MeshLab shows the message, as HTML, and meshlabserver the log.
+    // MeshLab shows the message as HTML, meshlabserver shows the log.
     errorMessage = QString::fromUtf8(error.what()).toHtmlEscaped();
     Log(GLLogStream::WARNING, std::string(error.what()));
     return false;

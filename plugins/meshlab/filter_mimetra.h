@@ -7,8 +7,8 @@
 #include "plugins/meshlab/dialog.h"
 #include "plugins/meshlab/toolkit.h"
 
-/// The operations of the table that begin with a mesh, as filters of MeshLab. A sequence is the
-/// visible layers in their order, or what a path names.
+/// Filters of MeshLab for the operations that begin with a mesh. A sequence consists of the visible
+/// layers in order, or comes from a path.
 class FilterMimetra : public QObject, public MeshFilterInterface {
   Q_OBJECT
   MESHLAB_PLUGIN_IID_EXPORTER(MESH_FILTER_INTERFACE_IID)
@@ -29,21 +29,21 @@ class FilterMimetra : public QObject, public MeshFilterInterface {
                    vcg::CallBackPos* progress) override;
 
  private:
-  /// What MeshLab knows of a filter.
+  /// Properties of a filter in MeshLab.
   struct Filter {
     QString name;
     const mimetra_operation* operation;
     QString info;
     int filter_class;
-    int changes;  ///< what of layers, in MeshModel's bits
+    int changes;  ///< changed data of layers, as MeshModel's bits
     FILTER_ARITY arity;
     void (*add_rows)(const mimetra_operation& operation, RichParameterList& rows);
     void (FilterMimetra::*run)(const mimetra_operation& operation, MeshDocument& document,
                                const RichParameterList& rows);
   };
 
-  /// Has one of its own where MeshLab needs more than a call: vertices that are selected, regions
-  /// that become a selection, or the regions of a result on its layers.
+  /// Filter for an operation. Some operations have their own filter, because they need selected
+  /// vertices, select regions, or show regions of a result on its layers.
   static Filter filter_of(const mimetra_operation& operation);
   static Filter filter_of_layers(const mimetra_operation& operation);
 
@@ -53,30 +53,30 @@ class FilterMimetra : public QObject, public MeshFilterInterface {
                    const RichParameterList& rows);
   void run_transfer(const mimetra_operation& operation, MeshDocument& document,
                     const RichParameterList& rows);
-  /// Any other operation, by the kinds of what it takes and makes.
+  /// Runs any other operation, according to the kinds of its inputs and outputs.
   void run_on_layers(const mimetra_operation& operation, MeshDocument& document,
                      const RichParameterList& rows);
 
-  /// Gives a call what it needs: the visible layers as a sequence, the current one as a mesh, or
-  /// what the paths in their rows name. The layers that were taken as frames, or as the mesh where
-  /// there are no frames.
+  /// Gives a call its required inputs: the visible layers as a sequence, the current layer as a
+  /// mesh, or the paths in their rows. Returns the layers that are frames, or the mesh's layer if
+  /// the operation takes no frames.
   std::vector<MeshModel*> give_inputs(mimetra_meshlab::Call& call,
                                       const mimetra_operation& operation, MeshDocument& document,
                                       const RichParameterList& rows,
                                       const std::vector<std::string>& reading) const;
-  /// The frames of `layers`, or those of a path that stands in the row of `input`.
+  /// Sequence of `layers`, or of the path in the row of `input` if that is not empty.
   mimetra_meshlab::Data sequence_of(const RichParameterList& rows, const char* input,
                                     const std::vector<std::string>& reading,
                                     const std::vector<MeshModel*>& layers) const;
-  /// Frames as new, hidden layers that look like `base`, which may be null, or the new ones before.
+  /// Adds frames as hidden layers that look like `base`, or like the first new layer if it is null.
   std::vector<MeshModel*> add_layers(MeshDocument& document, const std::string& name,
                                      const mimetra_meshlab::Frames& frames, MeshModel* base);
-  /// Fields as the quality of the layers `given`, or of new ones where they are on another shape.
+  /// Shows a field as the quality of the layers `given`, or of new layers if the shape differs.
   void show_fields(MeshDocument& document, const std::string& name,
                    const mimetra_meshlab::Data& fields, const std::vector<MeshModel*>& given,
                    const std::string& field);
   void run(mimetra_meshlab::Call& call, const mimetra_meshlab::Request& request);
-  /// Writes further outputs; last, so that a file that cannot be written costs no result.
+  /// Writes the files last, so that a file that cannot be written does not lose a result.
   void save_outputs(const mimetra_meshlab::Call& call,
                     const mimetra_meshlab::Request& request) const;
 

@@ -23,7 +23,7 @@ Corner edge_of(const CMeshO& mesh, const CFaceO& face, int edge) {
   return {vertex_of(mesh, face, edge), vertex_of(mesh, face, edge + 1)};
 }
 
-/// The first triangle of each triangle's polygon.
+/// First triangle of each triangle's polygon.
 std::vector<int> first_triangles(const CMeshO& mesh) {
   std::vector<int> first(mesh.face.size());
   std::iota(first.begin(), first.end(), 0);
@@ -48,8 +48,8 @@ std::vector<int> first_triangles(const CMeshO& mesh) {
   return first;
 }
 
-/// The vertices around triangles, from the first vertex of the first; empty where the triangles'
-/// outer edges are not one loop without a vertex twice.
+/// Vertices around triangles, starting at the first vertex of the first triangle. Empty if the
+/// outer edges are not one loop that visits each vertex once.
 std::vector<std::int32_t> outline(const CMeshO& mesh, const std::vector<int>& triangles) {
   std::map<std::int32_t, std::int32_t> next;
   std::size_t outer = 0;
@@ -75,9 +75,9 @@ std::vector<std::int32_t> outline(const CMeshO& mesh, const std::vector<int>& tr
   return whole ? loop : std::vector<std::int32_t>();
 }
 
-/// Fills in the faces of a mesh without deleted elements: polygons where MeshLab has marked inner
-/// edges of triangles as faux. Each begins with the first vertex of its first triangle; triangles
-/// whose marks enclose no simple polygon stay triangles.
+/// Appends the faces of a mesh without deleted elements. Triangles whose common edges MeshLab marks
+/// as faux form a polygon, which begins with the first vertex of its first triangle. Triangles that
+/// do not form a simple polygon stay triangles.
 void append_faces(const CMeshO& mesh, Frames& frames) {
   const std::vector<int> first = first_triangles(mesh);
   std::vector<std::vector<int>> members(mesh.face.size());
@@ -102,7 +102,7 @@ void append_faces(const CMeshO& mesh, Frames& frames) {
   }
 }
 
-/// The polygons as fans of triangles whose inner edges are faux.
+/// Adds polygons as fans of triangles with faux inner edges.
 void add_polygons(const Frames& frames, CMeshO& mesh) {
   std::size_t begin = 0;
   for (const std::int32_t size : frames.face_sizes) {
@@ -145,7 +145,7 @@ void append_positions(const MeshModel& layer, Frames& frames) {
   }
 }
 
-/// Polygons, each turned so that its smallest vertex comes first.
+/// Corners of all polygons, each rotated so that its smallest vertex comes first.
 std::vector<std::int32_t> turned_corners(const Frames& frames) {
   std::vector<std::int32_t> corners = frames.corners;
   auto begin = corners.begin();
@@ -156,7 +156,7 @@ std::vector<std::int32_t> turned_corners(const Frames& frames) {
   return corners;
 }
 
-/// The first polygon that differs; the number of polygons where none does.
+/// Index of the first polygon that differs; the number of polygons if none differs.
 std::size_t first_difference(const Frames& a, const Frames& b) {
   const std::vector<std::int32_t> a_corners = turned_corners(a);
   const std::vector<std::int32_t> b_corners = turned_corners(b);
@@ -245,7 +245,7 @@ bool have_same_faces(const Frames& a, const Frames& b) {
 
 void show_values(MeshModel& layer, const std::vector<double>& values) {
   std::vector<double> numbers = values;
-  // MeshLab's colours and histograms need numbers.
+  // MeshLab's colours and histograms need finite numbers.
   for (double& value : numbers) value = std::isfinite(value) ? value : -1;
   set_quality(layer, numbers);
   layer.updateDataMask(MeshModel::MM_VERTCOLOR);

@@ -7,31 +7,31 @@
 
 #include "plugins/meshlab/toolkit.h"
 
-/// MeshLab's layers as sequences, and results as layers.
+/// Conversion of MeshLab's layers to sequences and of results to layers.
 namespace mimetra_meshlab {
 
-/// The visible layers in their order, but `left_out`. They lose what was marked as deleted.
+/// Visible layers in order, without `left_out`. Removes deleted elements from them.
 std::vector<MeshModel*> visible_layers(MeshDocument& document, const MeshModel* left_out = nullptr);
 
-/// One frame a layer, placed by the layers' matrices. Triangles that MeshLab joins to polygons are
-/// these polygons. Throws Failure that names the first layer without faces, or with others than the
-/// first layer has.
+/// Makes one frame of each layer and applies the layers' matrices. Triangles that MeshLab joins to
+/// polygons become polygons. Throws Failure that names the first layer without faces, or with other
+/// faces than the first layer.
 Frames frames_of(const std::vector<MeshModel*>& layers);
 
-/// Throws Failure that says how the faces of `found` differ from those of `expected`.
+/// Throws Failure that says how the faces of `found` differ from the faces of `expected`.
 void check_same_faces(const Frames& found, const std::string& found_name, const Frames& expected,
                       const std::string& expected_name);
 
-/// True where both have the same vertices and polygons, in one order.
+/// True if both have the same number of vertices and the same polygons in the same order.
 bool have_same_faces(const Frames& a, const Frames& b);
 
-/// The values as vertex quality, with its colours; -1 where there is none.
+/// Shows values as vertex quality and colours; values that are not finite become -1.
 void show_values(MeshModel& layer, const std::vector<double>& values);
 
-/// Regions as quality, each in a colour of its own; their vertices and the faces at them selected.
+/// Shows regions as quality with one colour a region, and selects their vertices and faces.
 void show_regions(MeshModel& layer, const std::vector<double>& region);
 
-/// A hidden new layer with the frame's positions on `base`, or of the frame's faces without one.
+/// Adds a hidden layer with the positions of a frame and the faces of `base`, or else of `frames`.
 MeshModel& add_layer(MeshDocument& document, const std::string& label, const Frames& frames,
                      std::int64_t frame, MeshModel* base);
 

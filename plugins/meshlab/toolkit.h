@@ -7,23 +7,23 @@
 
 #include "plugins/c/mimetra.h"
 
-/// mimetra's C interface for C++: handles that free themselves, errors as exceptions.
+/// C++ wrapper of mimetra's C interface. Handles free themselves, and errors are exceptions.
 namespace mimetra_meshlab {
 
-/// What went wrong, in words for people.
+/// Error with a message for users.
 class Failure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The shortest text that is this number: 0.1 of a float, where a double of it would be
-/// 0.100000001.
+/// Shortest text that reads back as this number, as "0.1" for a float that is 0.100000001 as a
+/// double.
 std::string shortest_text(float value);
 std::string shortest_text(double value);
 
 using Data = std::shared_ptr<const mimetra_data>;
 
-/// Positions F x N x 3 and polygons: their sizes, and the vertices of one after the other.
+/// Positions (F x N x 3) and polygons: their sizes, then the vertices of all polygons.
 struct Frames {
   std::vector<double> positions;
   std::vector<std::int32_t> face_sizes;
@@ -32,7 +32,7 @@ struct Frames {
   std::int64_t vertices = 0;
 };
 
-/// The operations, and the values that they work on. Functions throw Failure.
+/// Operations, and functions for the values that they work on. Functions throw Failure.
 class Toolkit {
  public:
   /// Messages while loading and running go to `log`.
@@ -41,24 +41,24 @@ class Toolkit {
   Toolkit(const Toolkit&) = delete;
   Toolkit& operator=(const Toolkit&) = delete;
 
-  /// All of them, those of plugins too.
+  /// All operations, including plugins.
   std::vector<const mimetra_operation*> operations() const;
 
   Data sequence(const std::string& name, const Frames& frames) const;
-  /// A model without expressions, of the first frame: what a transfer takes as a mesh.
+  /// A model without expressions, from the first frame. A transfer accepts it as a mesh.
   Data mesh(const std::string& name, const Frames& frames) const;
-  /// A sequence of whatever the command reads as one; settings are "frames=0:100" and the like.
+  /// Reads a sequence as the command does. Settings are "frames=0:100" and the like.
   Data load_sequence(const std::string& text, const std::vector<std::string>& settings) const;
   /// Writes a value as the command does.
   void save(const Data& data, const std::string& path) const;
   std::string name_of(const Data& data) const;
-  /// A sequence's positions and faces.
+  /// Positions and faces of a sequence.
   Frames frames_of(const Data& data) const;
-  /// Names of the fields that have one number for each vertex.
+  /// Names of the fields with one number for each vertex.
   std::vector<std::string> vertex_fields(const Data& data) const;
-  /// The numbers of a vertex field.
+  /// Numbers of a vertex field.
   std::vector<double> field(const Data& data, const char* name) const;
-  /// A table as lines of CSV; an empty cell is empty.
+  /// Lines of a table as CSV. NaN becomes an empty cell.
   std::vector<std::string> lines_of(const Data& table) const;
 
  private:
@@ -74,7 +74,7 @@ class Toolkit {
   mimetra_context* context_ = nullptr;
 };
 
-/// One operation with its inputs and parameters, to be run. Functions throw Failure.
+/// One operation with its inputs and parameters. Functions throw Failure.
 class Call {
  public:
   Call(const Toolkit& toolkit, const char* operation);
@@ -84,16 +84,16 @@ class Call {
 
   void set(const char* parameter, const std::string& text);
   void give(const char* input, const Data& data);
-  /// The value of an input from a file.
+  /// Reads the value of an input from a file.
   void read(const char* input, const std::string& text);
   void want(const char* output);
-  /// Asks for the manifest of the run, in a file that does not exist.
+  /// Asks for the manifest of the run, in a file that does not exist yet.
   void write_manifest(const std::string& path);
-  /// `progress` gets the share of the work that is done; 0 as its answer cancels.
+  /// `progress` gets the share of the work done and returns 0 to cancel.
   void run(mimetra_progress progress, void* user);
-  /// Null where the call has not made it.
+  /// Null if the run did not make the output.
   Data output(const char* name) const;
-  /// The result for people, or for programs where it has no other.
+  /// Summary for users, or the JSON report if there is no summary.
   std::string summary() const;
 
  private:

@@ -9,15 +9,15 @@ namespace mimetra::samples {
 
 namespace {
 
-/// One horizontal section: its foremost, widest and rearmost point.
+/// Horizontal section of the head: its foremost, widest and rearmost point.
 struct Section {
   double front_y, front_z;
   double side_x, side_y, side_z;
   double back_y, back_z;
 };
 
-// From the first section below the crown to the neck's end; they rise towards the back from the
-// cheeks down, as a jaw does.
+// Sections from below the crown to the end of the neck. From the cheeks down they rise towards the
+// back, as a jaw does.
 constexpr std::array<Section, 12> kSections = {{
     {107, 26, 38, 106, -11, 103, -50},     // 1
     {91, 55, 57, 89, -12, 85, -81},        //
@@ -40,7 +40,8 @@ double Section::*const kQuantities[] = {&Section::front_y, &Section::front_z, &S
 constexpr double kCrownY = 113.5;
 constexpr double kCrownZ = -12;
 
-/// Section 0 is the crown itself, -1 the first one seen from behind: the surface is round there.
+/// Section by index. Section 0 is the crown and -1 is section 1 turned back to front, which makes
+/// the crown round.
 Section section_at(int index) {
   if (index > 12) index = 12;
   if (index >= 1) return kSections[static_cast<std::size_t>(index - 1)];
@@ -50,7 +51,7 @@ Section section_at(int index) {
           first.side_z, first.front_y, first.front_z};
 }
 
-/// Between the sections by the cubic of Catmull and Rom.
+/// Catmull-Rom interpolation between the sections.
 Section section_between(double v) {
   int index = static_cast<int>(v);
   if (index > 11) index = 11;
@@ -72,7 +73,7 @@ Eigen::Vector3d skull_point(double u, double v) {
   const double side = u < 0 ? -1 : 1;
   const double a = side * u;
   const bool front = a <= 1;
-  const double t = front ? a : 2 - a;  // tangent of half the angle from the front, or the back
+  const double t = front ? a : 2 - a;  // tangent of half the angle from the front or the back
   const double sine = 2 * t / (1 + t * t);
   const double cosine = (1 - t * t) / (1 + t * t);
   const double end_y = front ? section.front_y : section.back_y;
@@ -87,7 +88,7 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-// The bones under the skin, then what sits on the nose. Middle, radii, push.
+// Bones under the skin, then the parts of the nose: middle, radii, push.
 const Stroke kBones[] = {
     {{30, 20, 74}, {34, 15, 60}, {0, 0, 4.5}},     // brow ridge
     {{0, 16, 84}, {13, 16, 60}, {0, 0, 0.8}},      // between the brows
@@ -132,14 +133,14 @@ double nose_ridge(double x, double y) {
   return s >= 1 ? 0 : ridge(y) * square(1 - s);
 }
 
-/// An eyebrow as sculptors carve it: a low arc.
+/// Relief of an eyebrow, carved as a low arc.
 double eyebrow(double x, double y) {
   static const Curve arc({{6, 19}, {14, 20.5}, {26, 24}, {34, 25}, {44, 21.5}, {52, 15}});
   static const Curve strength({{6, 0}, {17, 0.8}, {30, 1}, {52, 0}});
   return 2.0 * strength(std::abs(x)) * bump(square((y - arc(std::abs(x))) / 8));
 }
 
-/// Two rolls that touch at d = 0.
+/// Relief of the lips: two rolls that touch at d = 0.
 double lips(double x, double d) {
   static const Curve upper(
       {{0, 0}, {1.2, 1.6}, {3.2, 3.1}, {5.5, 3.6}, {8, 2.0}, {10, 0.9}, {13, 0}});
@@ -154,7 +155,7 @@ double lips(double x, double d) {
          (d > 0 ? upper(d * thinner) * (1 - s) : lower(d * (1 + 0.7 * s)) * (1 - square(s)));
 }
 
-/// The groove from nose to lip, and the dents at the corners of the mouth.
+/// Relief of the groove from nose to lip, and of the dents at the corners of the mouth.
 double beside_lips(double x, double d) {
   return -1.3 * bump(square(x / 4.5) + square((d - 12) / 9)) -
          2 * bump(square((std::abs(x) - 27.5) / 6) + square((d + 0.5) / 7));
@@ -171,8 +172,7 @@ Eigen::Vector3d with_features(const Eigen::Vector3d& p, double lip, double front
 }
 
 Eigen::Vector3d with_ear(const Eigen::Vector3d& p, double u, double v) {
-  // A section through the ear at one height, from its front to behind it, and how the ear's height
-  // scales it.
+  // Section through the ear at one height, from its front to behind it, and its scale by height.
   static const Curve outward({{1, 0}, {1.06, 0}, {1.11, 8}, {1.16, 16}, {1.21, 13}, {1.27, 0}});
   static const Curve backward(
       {{1, 0}, {1.06, 6}, {1.11, 12}, {1.16, 6}, {1.21, 8}, {1.27, -4}, {1.42, 0}});
@@ -190,12 +190,12 @@ Eigen::Vector3d with_ear(const Eigen::Vector3d& p, double u, double v) {
 
 namespace {
 
-/// z of the upper teeth in front, and height of the edges of both jaws' teeth above the line
-/// between the lips, mm.
+/// z of the upper front teeth, and height of the edges of both jaws' teeth above the line between
+/// the lips, mm.
 constexpr double kFront = 80, kEdge = -3;
 
-/// A point around a tooth: before (+) or behind the arch of the jaw, and from the edge to the gum,
-/// mm.
+/// A point around a tooth, mm: its distance in front of the jaw's arch (negative behind it), and
+/// the distance from the edge towards the gum.
 struct Around {
   double out;
   double up;
@@ -211,7 +211,7 @@ constexpr std::array<Around, kToothPoints> kIncisor = {{{0.6, 0},
                                                         {-0.6, 0}}};
 constexpr std::array<Around, kToothPoints> kMolar = {
     {{1.6, 0}, {2.6, 3}, {2, 6.5}, {3, 7.8}, {2.4, 15}, {-8, 15}, {-7.5, 8}, {-6.4, 3}, {-5, 0}}};
-/// Added to a tooth's points between two of them: a groove, with the gum in its corner.
+/// Offset of the points between two teeth: a groove, with the gum in its corner.
 constexpr std::array<Around, kToothPoints> kBetween = {{{-0.5, 0.6},
                                                         {-1.2, 0},
                                                         {-0.8, -2.2},
@@ -222,7 +222,7 @@ constexpr std::array<Around, kToothPoints> kBetween = {{{-0.5, 0.6},
                                                         {0.9, 0},
                                                         {0.3, 0.6}}};
 
-/// The arch of the jaw at `u` of HeadVertex (u >= 0): x, and z behind its middle.
+/// Arch of the jaw at `u` >= 0 as in HeadVertex: x, and z relative to its middle (negative behind).
 Eigen::Vector2d arch(double u) {
   static const Curve beside({{-1, -8.4},
                              {0, 0},
@@ -265,7 +265,7 @@ Eigen::Vector3d teeth_point(const HeadVertex& vertex) {
     around.up += kBetween[point].up;
   }
   Eigen::Vector2d place = middle + around.out * out;
-  // The lower teeth close behind the upper ones, on a gum that leans back above the chin.
+  // The lower teeth close behind the upper ones, and their gum leans back above the chin.
   if (vertex.rim < 0) {
     around.up *= 0.8;
     place = {0.93 * place.x(), 0.97 * place.y() - 3.5 - square(around.up / 7)};

@@ -8,36 +8,35 @@
 
 namespace mimetra::samples {
 
-// The sample's numbers are the same on every machine: its formulas use only operations that IEEE
-// 754 rounds exactly (+ - * / and the square root), none of the C library's transcendental
-// functions.
+// The sample has the same numbers on every machine. Its formulas use only operations that IEEE 754
+// rounds exactly (+ - * / and the square root), and no transcendental functions of the C library.
 
 constexpr double square(double x) {
   return x * x;
 }
 
-/// 0 up to x = 0, 1 from x = 1, with zero slope at both.
+/// Rises from 0 at x <= 0 to 1 at x >= 1, with zero slope at both.
 constexpr double smooth_step(double x) {
   if (x <= 0) return 0;
   if (x >= 1) return 1;
   return x * x * (3 - 2 * x);
 }
 
-/// 1 at squared radius 0, exactly 0 from 1, two continuous derivatives.
+/// Falls from 1 at squared radius 0 to exactly 0 from 1 on, with two continuous derivatives.
 constexpr double bump(double squared_radius) {
   if (squared_radius >= 1) return 0;
   const double rest = 1 - squared_radius;
   return rest * rest * rest;
 }
 
-/// `bump` of an ellipsoid's three radii around `center`.
+/// Value of bump() in an ellipsoid with three `radii` around `center`.
 inline double within(const Eigen::Vector3d& p, const Eigen::Vector3d& center,
                      const Eigen::Vector3d& radii) {
   return bump(((p - center).array() / radii.array()).square().sum());
 }
 
-/// A smooth curve through knots, constant beyond the first and the last (cubic Hermite, slopes from
-/// the neighbours).
+/// Smooth curve through knots, constant beyond the first and the last: a cubic Hermite spline with
+/// slopes from the neighbouring knots.
 class Curve {
  public:
   struct Knot {
@@ -54,17 +53,17 @@ class Curve {
   std::vector<Knot> knots_;
 };
 
-/// Pushes the surface around a place, as a thumb pushes clay. Lengths in mm.
+/// Push of the surface around a place, as a thumb pushes clay. Lengths are in mm.
 struct Stroke {
   Eigen::Vector3d center;
-  Eigen::Vector3d radii;  ///< nothing moves from there on
-  Eigen::Vector3d push;   ///< at the middle
+  Eigen::Vector3d radii;  ///< distance from which nothing moves, along each axis
+  Eigen::Vector3d push;   ///< displacement at the center
 };
 
-/// Where all strokes together move `p`. Each weighs by the place before any of them.
+/// Position of `p` after all strokes. Each stroke is weighted at the original position.
 Eigen::Vector3d sculpted(const Eigen::Vector3d& p, std::span<const Stroke> strokes);
 
-/// The same with every stroke that has its middle beside the plane x = 0 made on both sides. A
+/// Applies strokes as sculpted(), on both sides if their center is beside the plane x = 0. A
 /// mirrored `p` gives exactly the mirrored result.
 Eigen::Vector3d sculpted_on_both_sides(const Eigen::Vector3d& p, std::span<const Stroke> strokes);
 

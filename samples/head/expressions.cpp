@@ -14,10 +14,10 @@ namespace mimetra::samples {
 namespace {
 
 using Vector = Eigen::Vector3d;
-/// How an expression moves a vertex at a place.
+/// Displacement of a vertex at a place by an expression.
 using Motion = std::function<Vector(const HeadVertex&, const Vector&)>;
 
-/// The motion of the head's left half mirrored onto its right one, and the other way round.
+/// Motion with the head's left and right sides exchanged.
 Motion mirrored(const Motion& motion) {
   const Eigen::Vector3d mirror(-1, 1, 1);
   return [motion, mirror](const HeadVertex& vertex, const Vector& p) -> Vector {
@@ -63,8 +63,8 @@ Motion sculpting_both_sides(std::span<const Stroke> strokes) {
   };
 }
 
-/// Share of the jaw's rotation that the skin takes at a place: all of it at the lower lip and the
-/// chin, none at the upper lip, about a third at the corners of the mouth.
+/// Share of the jaw's rotation that the skin takes at a place. It is 1 at the lower lip and the
+/// chin, 0 at the upper lip, and about a third at the corners of the mouth.
 double jaw_share(const HeadVertex& vertex, const Vector& p) {
   constexpr double kCornerShare = 0.35, kLipReach = 30, kCheekReach = 38;
   const double s = std::abs(p.x()) / kMouthHalfWidth;
@@ -79,7 +79,7 @@ double jaw_share(const HeadVertex& vertex, const Vector& p) {
   return beside * in_front * below_jaw;
 }
 
-/// How the whole jaw moves a place when it opens: by a turn about the joints at the ears.
+/// Displacement of a place when the whole jaw opens, by a rotation about the joints at the ears.
 Vector jaw_turn(const Vector& p) {
   const Vector hinge(0, -25, -5);
   constexpr double kSine = 0.24;
@@ -93,8 +93,8 @@ Vector jaw_open(const HeadVertex& vertex, const Vector& p) {
   return jaw_share(vertex, p) * jaw_turn(p);
 }
 
-/// How the bones behind the skin move: the upper jaw not at all, the lower one with its teeth and
-/// the tongue as a whole, and what hangs between them half as far.
+/// Displacement inside the mouth. The upper jaw does not move; the lower jaw with teeth and tongue
+/// moves by jaw_turn(), and places in between by half of it.
 Vector jaw_open_inside(const HeadVertex& vertex, const Vector& p) {
   return (1 - vertex.rim) / 2.0 * jaw_turn(p);
 }
@@ -103,9 +103,8 @@ Vector still(const HeadVertex&, const Vector&) {
   return Vector::Zero();
 }
 
-/// Displacements (3N) of the skin by `motion`, of teeth and tongue by `inside`. What lies behind
-/// the lids moves with them; behind the lips it moves as they do in front and by `inside` at the
-/// back.
+/// Displacements (3N) of the skin by `motion`, and of teeth and tongue by `inside`. The backs of
+/// the lids move with the lids. Behind the lips, the motion blends from the lips' to `inside`.
 Eigen::VectorXd field_of(const HeadGrid& grid, const Positions& mean, const Motion& motion,
                          const Motion& inside) {
   Positions field = Positions::Zero(mean.rows(), 3);
@@ -135,7 +134,7 @@ Eigen::VectorXd field_of(const HeadGrid& grid, const Positions& mean, const Moti
   return Eigen::Map<const Eigen::VectorXd>(field.data(), field.size());
 }
 
-/// Displacements (3N) of other eyelids.
+/// Displacements (3N) that change the eyelids to `left` and `right`.
 Eigen::VectorXd lid_field(const HeadGrid& grid, const Positions& mean, const Eyelids& left,
                           const Eyelids& right) {
   const Positions field = head_positions(grid, left, right) - mean;
@@ -176,7 +175,7 @@ namespace {
 
 using Person = Vector (*)(const Vector&);
 
-/// The same on both sides of the face.
+/// Value of within() mirrored to both sides of the face.
 double within_both(const Vector& p, const Vector& center, const Vector& radii) {
   return within({std::abs(p.x()), p.y(), p.z()}, center, radii);
 }
@@ -225,11 +224,11 @@ Vector child(const Vector& p) {
                                -9 * nose(p) + 4 * cheeks + 5 * forehead - 1.5 * brows);
 }
 
-/// The person with eyes that are those of all others, moved as a whole: eyeballs stay spheres, lids
-/// stay on them, and a blink closes them.
+/// Displacement by `person` with the eye region moved as a whole. Eyeballs stay spheres, lids stay
+/// on them, and a blink closes them.
 Vector with_sound_eyes(Person person, const Vector& p) {
   constexpr double kReach = 30,
-                   kSkin = 0.74;  // whole to 15 mm, not at all in the middle of the face
+                   kSkin = 0.74;  // whole up to 15 mm, none in the middle of the face
   const Vector center(p.x() < 0 ? -kLeftEye.x() : kLeftEye.x(), kLeftEye.y(), kLeftEye.z());
   const double beside = (p - center).squaredNorm() / (kReach * kReach);
   const double whole = smooth_step((1 - beside) / kSkin);

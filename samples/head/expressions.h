@@ -5,12 +5,12 @@
 
 namespace mimetra::samples {
 
-/// 12 expressions of the head, named as ARKit names them (`Left` is the head's own left). Each
-/// moves a part of the face and leaves all else exactly where it is.
+/// The head's 12 expressions, named as in ARKit (`Left` is the head's own left). Each moves a part
+/// of the face and leaves all else exactly in place.
 ShapeBasis head_expressions(const HeadGrid& grid);
 
-/// 4 clearly different people as displacements from the mean head: a wide face, a long and narrow
-/// one, one with a strong jaw, brows and nose, a child.
+/// Four clearly different people as displacements from the mean head. One has a wide face, one a
+/// long narrow face, one a strong jaw, brows and nose; one is a child.
 ShapeBasis head_identities(const Positions& mean);
 
 }  // namespace mimetra::samples

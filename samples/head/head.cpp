@@ -20,15 +20,15 @@ MorphableModel parametric_head() {
 
 namespace {
 
-/// A landmark on the left side of the face, and that on the right side which mirrors it (the same
-/// in the middle): iBUG's numbers, and where it is on the front of the rest pose, mm.
+/// A landmark on the left side of the face, its mirror image on the right, and their place. In the
+/// middle, both have the same iBUG number. The place is on the front of the rest pose, in mm.
 struct Place {
   int left;
   int right;
   double x;
   double y;
-  double row = 0;  ///< that it lies on, or 0 for any
-  int rim = 0;     ///< of that row
+  double row = 0;  ///< row of the grid, or 0 for any
+  int rim = 0;     ///< side of the cut in that row
 };
 
 const Place kPlaces[] = {
@@ -40,7 +40,7 @@ const Place kPlaces[] = {
     {25, 20, 31, 25.5},
     {26, 19, 42, 24},
     {27, 18, 52, 17},
-    // Nose: its ridge downwards, then its base outwards.
+    // Nose: down the ridge, then along the base outwards.
     {28, 28, 0, 2},
     {29, 29, 0, -11},
     {30, 30, 0, -24},
@@ -48,14 +48,14 @@ const Place kPlaces[] = {
     {34, 34, 0, -48.5},
     {35, 33, 6.5, -47},
     {36, 32, 13, -43.5},
-    // Eyes: the inner corner, along the upper lid to the outer one, and back.
+    // Eyes: from the inner corner along the upper lid to the outer corner, and back.
     {43, 40, 17.5, -3, kEyeRow},
     {44, 39, 26, 4, kEyeRow, 1},
     {45, 38, 36, 4, kEyeRow, 1},
     {46, 37, 45, -4, kEyeRow},
     {47, 42, 36, -5, kEyeRow, -1},
     {48, 41, 26, -5, kEyeRow, -1},
-    // Outline of the lips: the upper one from its middle to the corner, then the lower one back.
+    // Outline of the lips: the upper lip from middle to corner, then the lower lip back.
     {52, 52, 0, kMouthHeight + 5},
     {53, 51, 6, kMouthHeight + 6},
     {54, 50, 15, kMouthHeight + 4.5},
@@ -63,7 +63,7 @@ const Place kPlaces[] = {
     {56, 60, 16, kMouthHeight - 7.5},
     {57, 59, 8, kMouthHeight - 10},
     {58, 58, 0, kMouthHeight - 10.5},
-    // Between the lips, likewise.
+    // Inner edge of the lips, in the same order.
     {63, 63, 0, kMouthHeight, kMouthRow, 1},
     {64, 62, 8, kMouthHeight, kMouthRow, 1},
     {65, 61, 21, kMouthHeight, kMouthRow, 1},
@@ -71,9 +71,9 @@ const Place kPlaces[] = {
     {67, 67, 0, kMouthHeight, kMouthRow, -1},
 };
 
-/// The skin vertex on the front of the face that is nearest to a place, on one side (1 the left).
+/// Skin vertex on the front of the face nearest to a place on one side (1 for left, -1 for right).
 VertexIndex nearest(const HeadGrid& grid, const Positions& rest, const Place& place, int side) {
-  constexpr double kFront = 20;  // mm before the middle of the head
+  constexpr double kFront = 20;  // least z of the front, mm
   double least = INFINITY;
   VertexIndex found = -1;
   for (std::size_t i = 0; i < grid.vertices.size(); ++i) {
@@ -110,7 +110,7 @@ namespace {
 constexpr int kFrames = 120;
 constexpr double kFramesPerSecond = 30;
 
-/// An expression that comes, stays and goes, in frames.
+/// An expression that rises to a peak, holds and falls; times are in frames.
 struct Action {
   const char* expression;
   double peak;

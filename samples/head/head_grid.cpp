@@ -9,12 +9,12 @@
 namespace mimetra::samples {
 namespace {
 
-// Columns from the middle of the face to the ear, as sines of the angle around the head: even where
-// the face moves, the corners of mouth and eyes on a column each.
+// Columns from the middle of the face to the ear, as sines of the angle around the head. They are
+// even where the face moves, and the corners of mouth and eyes are on columns.
 constexpr std::array kColumnSines = {0.0,   0.046, 0.092, 0.138, 0.184, 0.23,  0.272,
                                      0.314, 0.356, 0.398, 0.44,  0.482, 0.524, 0.566,
                                      0.608, 0.67,  0.735, 0.80,  0.865, 0.925, 0.975};
-// From the front of the ear over the ear to the back of the head, as `u`.
+// Columns from the front of the ear to the back of the head, as `u`.
 constexpr std::array kBackColumns = {1.0, 1.06, 1.11, 1.16, 1.21, 1.27, 1.42, 1.60, 1.80, 2.0};
 constexpr int kEarColumn = static_cast<int>(kColumnSines.size());
 constexpr int kBackColumn = kEarColumn + static_cast<int>(kBackColumns.size()) - 1;
@@ -33,13 +33,13 @@ constexpr std::array kRows = {
     8.0,  8.2,  8.45, 8.7,  9.0,  9.4,  9.9,  10.5, 11.2, 12.0};      // chin, neck
 
 constexpr int kEyelidRings = 2;
-// Pit of the pupil, dish of the iris, ball.
+// Rows of the pit of the pupil, the dish of the iris, and the ball.
 constexpr std::array kEyeballRows = {0.06, 0.10, 0.185, 0.205, 0.28, 0.37, 0.48, 0.60, 0.76, 0.89};
 constexpr std::array kTongueRows = {0.14, 0.27, 0.40, 0.50, 0.60, 0.73, 0.86};
-// Within a tooth, from one of its sides to the other.
+// Columns within a tooth, from one side to the other.
 constexpr std::array kToothColumns = {0.0, 0.22, 0.78};
 
-/// Column in -kBackColumn + 1 .. kBackColumn to the parameter u.
+/// Parameter `u` of a column in -kBackColumn + 1 .. kBackColumn.
 double around(int column) {
   const int side = column < 0 ? -1 : 1;
   const int c = side * column;
@@ -116,8 +116,8 @@ class Builder {
     }
   }
 
-  /// Rings behind the cut of `row` from column `from` to `to`; the last one, above and below by
-  /// column.
+  /// Adds rings behind the cut of `row` between columns `from` and `to`. Returns the last ring: its
+  /// upper half by ascending column, then its lower half back.
   std::vector<VertexIndex> add_rim(int row, int from, int to, HeadVertex::Part part, int rings,
                                    int eye) {
     std::vector<VertexIndex> sources;
@@ -143,7 +143,7 @@ class Builder {
     return front;
   }
 
-  /// Closes the ring that add_rim ended with, from its upper to its lower half.
+  /// Closes the ring that add_rim() returned, between its upper and lower half.
   void close(const std::vector<VertexIndex>& ring) {
     const std::size_t half = ring.size() / 2;
     const auto below = [&](std::size_t column) {
@@ -156,8 +156,8 @@ class Builder {
     add_face({ring[half - 1], below(half - 1), ring[half]});
   }
 
-  /// A closed surface around the z axis from its front (v = 0) to its back (1), with a ring in each
-  /// of the rows `v`.
+  /// Adds a closed surface around the z axis, from its front (v = 0) to its back (v = 1), with a
+  /// ring in each of `rows`.
   void add_ball(HeadVertex vertex, std::span<const double> rows) {
     const auto at = [&](double u, double v) {
       vertex.u = u;
@@ -172,8 +172,7 @@ class Builder {
     add_tube(front + 1, kBallColumns, static_cast<int>(rows.size()), front, back, false);
   }
 
-  /// The teeth and the gum of the upper (1) or the lower (-1) jaw, from the head's right to its
-  /// left.
+  /// Adds the teeth and gum of the upper (1) or lower (-1) jaw, from the head's right to its left.
   void add_teeth(int jaw) {
     std::vector<double> columns;
     for (int tooth = 0; tooth < kTeeth; ++tooth) {
@@ -195,8 +194,8 @@ class Builder {
              jaw < 0);
   }
 
-  /// Faces of a tube of rings of `columns` vertices from `first` on, closed by a vertex at each
-  /// end.
+  /// Adds the faces of a tube, closed by a vertex at each end. Its rings have `columns` vertices
+  /// each and start at vertex `first`.
   void add_tube(VertexIndex first, int columns, int rings, VertexIndex begin, VertexIndex end,
                 bool inside_out) {
     const auto face = [&](std::vector<VertexIndex> corners) {
@@ -216,7 +215,7 @@ class Builder {
 
   HeadGrid grid_;
   VertexIndex pole_ = -1;
-  /// Vertices by row and column, as the faces above and below the row see them.
+  /// Vertices by row and column, used by the faces above and below the row, respectively.
   std::map<std::pair<int, int>, VertexIndex> above_, below_;
 };
 

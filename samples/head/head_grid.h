@@ -6,47 +6,48 @@
 
 namespace mimetra::samples {
 
-/// Rows of the skull's surface at which it is cut open, in the parameter `v` of `HeadVertex`.
+/// Rows at which the skull's surface is cut open, as `v` of HeadVertex.
 constexpr double kEyeRow = 5;
 constexpr double kMouthRow = 7;
-/// Rings behind the lips; the last one closes the pocket.
+/// Number of rings behind the lips; the last one closes the pocket.
 constexpr int kMouthRings = 5;
-/// Teeth on either side of each jaw.
+/// Number of teeth on each side of a jaw.
 constexpr int kTeeth = 6;
-/// Points around a tooth and its gum, see `HeadVertex`.
+/// Number of points around a tooth and its gum; see HeadVertex.
 constexpr int kToothPoints = 9;
-/// Vertices around an eyeball and the tongue.
+/// Number of vertices around an eyeball and the tongue.
 constexpr int kBallColumns = 12;
 
-/// Where a vertex of the sample lies, in the terms of the formulas that place it.
+/// Parameters of a vertex for the formulas that place it.
 struct HeadVertex {
   enum class Part {
-    skin,     ///< on the surface: `u`, `v`
-    mouth,    ///< behind the lips: ring `ring` (1, 2, ...) behind the skin vertex `source`
-    eyelid,   ///< behind an eyelid, likewise
+    skin,     ///< on the surface, at `u` and `v`
+    mouth,    ///< behind the lips, in ring `ring` (1, 2, ...) behind the skin vertex `source`
+    eyelid,   ///< behind an eyelid, also with `ring` and `source`
     eyeball,  ///< `u` around the line of sight, `v` from the pupil (0) to the back (1)
-    /// `u` along the jaw in teeth from its middle, whole between two of them and beyond kTeeth past
-    /// the last; `v` the point around them, from the edge in front over the gum to the edge behind
+    /// `u` counts teeth along the jaw from its middle. It is an integer between two teeth, and
+    /// exceeds kTeeth behind the last one. `v` is the number of the point around the tooth, from
+    /// the edge in front over the gum to the edge behind.
     teeth,
     tongue,  ///< `u` around its length, `v` from the tip (0) to the root (1)
   };
   Part part = Part::skin;
-  /// Around the head: 0 at the middle of the face, 1 and -1 at the ears (1 on the head's own left),
-  /// 2 at the back.
+  /// Parameter around the head: 0 at the middle of the face, 1 at the left ear, -1 at the right
+  /// ear, 2 at the back.
   double u = 0;
-  /// Down the head: 0 at the crown, kEyeRow, kMouthRow, 12 at the neck's end.
+  /// Parameter down the head: 0 at the crown, kEyeRow, kMouthRow, 12 at the end of the neck.
   double v = 0;
-  /// Above (1) or below (-1) the cut of its row, of the upper or the lower jaw; 0 for all else.
+  /// 1 above the cut of its row or on the upper jaw, -1 below the cut or on the lower jaw, else 0.
   int rim = 0;
   VertexIndex source = -1;
   int ring = 0;
-  /// 1 for the head's left eye, -1 for its right one, 0 for all else.
+  /// 1 for the head's left eye, -1 for its right eye, else 0.
   int eye = 0;
 };
 
-/// The sample's vertices and faces: a grid of quadrilaterals around the head, cut open along the
-/// mouth and the eyes, with a pocket behind the lips, rims behind the lids, two eyeballs, the teeth
-/// of both jaws, a piece each, and a tongue. Mirror symmetric in its vertices.
+/// Vertices and faces of the sample, mirror symmetric: a grid of quadrilaterals around the head,
+/// cut open along the mouth and the eyes. It has a pocket behind the lips, rims behind the lids and
+/// two eyeballs. The teeth of each jaw are one piece; the tongue is another.
 struct HeadGrid {
   std::vector<HeadVertex> vertices;
   Polygons faces;

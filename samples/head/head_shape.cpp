@@ -10,17 +10,18 @@ namespace mimetra::samples {
 namespace {
 
 constexpr double kEyeballRadius = 13;
-// A closing lid moves on a straight line, up to 0.8 mm inside the surface it starts and ends on.
+// A closing lid moves along a straight line between two points of the lid surface, which passes up
+// to 0.8 mm inside that surface.
 constexpr double kLidThickness = 1.9;
 constexpr double kEyeHalfWidth = 14;
 
-/// The larger of both, rounded over about `width` where they meet.
+/// Maximum of `a` and `b`, rounded over about `width` where they meet.
 double smooth_max(double a, double b, double width) {
   return (a + b + std::sqrt(square(a - b) + square(width))) / 2;
 }
 
-/// The surface on which the left lids slide, in front of (x, y); far behind the face beside it. It
-/// is wider than the eyeball, so that the lids run smoothly into the corners of the eye.
+/// Surface on which the left lids slide: z at (x, y), which is far behind the face beside the lids.
+/// It is wider than the eyeball, so that the lids run smoothly into the corners of the eye.
 double lid_surface(double x, double y) {
   constexpr double kWiderToNose = 0.82, kWiderToTemple = 0.96;
   const double radius = kEyeballRadius + kLidThickness;
@@ -31,7 +32,7 @@ double lid_surface(double x, double y) {
   return kLeftEye.z() + (rest > 1 ? std::sqrt(rest) : rest);
 }
 
-/// How far the cut between the lids opens at the skin point (x, y) `side` (1 above, -1 below). The
+/// Opening of the cut between the lids at the skin point (x, y) on `side` (1 above, -1 below). The
 /// upper lid is highest towards the nose, the lower one lowest away from it.
 double lid_shift(double x, double y, int side, const Eyelids& lids) {
   constexpr double kReach[] = {19, 18};  // below, above
@@ -44,13 +45,13 @@ double lid_shift(double x, double y, int side, const Eyelids& lids) {
   return (line + opening) * (1 - s * s) * (1 - smooth_step(d));
 }
 
-/// Bends the line between the lips, with the skin around it, to a bow.
+/// Height that bends the line between the lips, and the skin around it, to a bow.
 double lip_bow(double x, double d) {
   static const Curve height({{0, -0.4}, {6, 0.4}, {14, 0}, {26, 0}, {48, 0}});
   return height(std::abs(x)) * bump(square(d / 22));
 }
 
-/// The closed lips lie a hair's breadth apart: vertices that coincide would count as one.
+/// Small gap that separates the closed lips, because coinciding vertices would count as one.
 double lip_gap(double x, double d, int side) {
   constexpr double kHalfGap = 0.12, kReach = 6;
   const double s = x / kMouthHalfWidth;
@@ -58,16 +59,16 @@ double lip_gap(double x, double d, int side) {
   return side * kHalfGap * (1 - s * s) * square(1 - std::abs(d) / kReach);
 }
 
-/// Which side of the cut in row `cut` a skin vertex lies on.
+/// Side of the cut in row `cut` on which a skin vertex is: 1 above, -1 below.
 int side_of(const HeadVertex& vertex, double cut) {
   if (vertex.v < cut) return 1;
   return vertex.v > cut ? -1 : vertex.rim;
 }
 
-/// On the left half of the head.
+/// Position of a skin vertex at `u` >= 0, on the left half of the head.
 Eigen::Vector3d left_skin_point(double u, const HeadVertex& vertex, const Eyelids& lids) {
   Eigen::Vector3d p = skull_point(u, vertex.v);
-  // The features sit on the front of the head and end before the ears.
+  // The features are on the front of the head and end before the ears.
   const double front = smooth_step((1 - u) / 0.3);
   const double lip = p.y() - skull_point(u, kMouthRow).y();
   p.y() += front * (lid_shift(p.x(), p.y(), side_of(vertex, kEyeRow), lids) + lip_bow(p.x(), lip) +
@@ -88,20 +89,21 @@ Eigen::Vector3d eye_center(int eye) {
   return {eye * kLeftEye.x(), kLeftEye.y(), kLeftEye.z()};
 }
 
-/// Behind the lips: the lips' inner side, then up and down before the gums, palate and floor.
+/// Position behind the lips: first their inner side, then up and down in front of the gums, palate
+/// and floor.
 Eigen::Vector3d mouth_point(const HeadVertex& vertex, const Eigen::Vector3d& source) {
   constexpr double kDepth[] = {3, 6, 13, 28, 48}, kHeight[] = {0.7, 8, 14, 16, 12},
                    kWidth[] = {0.95, 1, 1.05, 1.1, 1.1};
   const auto ring = static_cast<std::size_t>(vertex.ring - 1);
   const double rest = 1 - square(source.x() / kMouthHalfWidth);
   const double height = vertex.rim * kHeight[ring] * (rest > 0 ? std::sqrt(rest) : 0);
-  // The inner side of the chin lies further back than that of the lips.
+  // The inner side of the chin is further back than the inner side of the lips.
   const double chin = vertex.rim < 0 && vertex.ring > 1 ? 5 : 0;
   return {source.x() * kWidth[ring], source.y() + height, source.z() - kDepth[ring] - chin};
 }
 
-/// Behind the lids: the lid's edge down to the eyeball, then the inside of it, so that no gap
-/// shows.
+/// Position behind the lids: the lid's edge down to the eyeball, then inside the eyeball, so that
+/// no gap shows.
 Eigen::Vector3d eyelid_point(const HeadVertex& vertex, const Eigen::Vector3d& source) {
   constexpr double kOffEyeball[] = {0.9, -2};
   const Eigen::Vector3d center = eye_center(vertex.eye);
@@ -109,7 +111,7 @@ Eigen::Vector3d eyelid_point(const HeadVertex& vertex, const Eigen::Vector3d& so
   return center + radius * (source - center).normalized();
 }
 
-/// Of the unit sphere, (0, 0, 1) at v = 0, around the axis with u.
+/// Point of the unit sphere; `v` = 0 is (0, 0, 1), and `u` turns around the z axis.
 Eigen::Vector3d ball_point(double u, double v) {
   static_assert(kBallColumns == 12);  // as many as the cosines below
   constexpr double kHalf = 0.5;
@@ -123,7 +125,7 @@ Eigen::Vector3d ball_point(double u, double v) {
           (1 - t * t) * scale};
 }
 
-/// A sphere with a dent for the pupil, as in marble.
+/// Position on an eyeball: a sphere with a dent for the pupil, as in marble.
 Eigen::Vector3d eyeball_point(const HeadVertex& vertex) {
   constexpr double kIris = 0.23, kPupil = 0.12;
   const double t = vertex.v < 1 ? vertex.v / (1 - vertex.v) : 1;

@@ -33,7 +33,7 @@ void add_sample(OperationTable& table) {
   operation.name = "sample";
   operation.summary = "Write the built-in sample: a head and a performance of 120 frames";
   operation.outputs = {{"out", DataKind::model, "folder of the model"}};
-  operation.outputs.front().extensions = {""};  // its identities need one
+  operation.outputs.front().extensions = {""};  // a folder, which the identities need
   operation.examples = {
       "sample -o head/",
       "transfer head@identity001=1 head@identity002=1 --weights head/performance.csv -o out/"};

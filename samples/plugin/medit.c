@@ -1,6 +1,6 @@
-/* A plugin in C99: the format `.mesh`, a text that tools for finite elements (Medit, Gmsh, FreeFem)
- * share. Built as a shared library in a folder of MIMETRA_PLUGIN_PATH, it lets every operation read
- * and write triangle meshes of that kind: mimetra convert face.mesh -o face.obj */
+/* A plugin in C99 for the format `.mesh`, a text format that finite element tools share (Medit,
+ * Gmsh, FreeFem). Build it as a shared library in a folder of MIMETRA_PLUGIN_PATH. Every operation
+ * then reads and writes such triangle meshes: mimetra convert face.mesh -o face.obj */
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,7 +19,7 @@ static void free_mesh(mesh* it) {
   free(it->corners);
 }
 
-/* `count` and memory for three numbers each, no more than the file has bytes for. */
+/* Reads `count` and allocates three numbers for each; fails if the file is too short for them. */
 static void* counted(FILE* file, int* count, size_t size) {
   const long here = ftell(file);
   if (fscanf(file, "%d", count) != 1 || *count < 1 || fseek(file, 0, SEEK_END)) return NULL;
@@ -28,7 +28,7 @@ static void* counted(FILE* file, int* count, size_t size) {
   return calloc((size_t)*count, 3 * size);
 }
 
-/* What is wrong with a section; NULL for nothing. Each line ends in a label that is left out. */
+/* Returns the defect of a section, or NULL. The label at the end of each line is skipped. */
 static const char* read_vertices(FILE* file, mesh* it) {
   if (it->positions) return "has Vertices twice";
   it->positions = (double*)counted(file, &it->vertices, sizeof(double));

@@ -4,7 +4,8 @@
 
 #include <mimetra/plugins/c/mimetra.h>
 
-/* One step for one frame of n vertices; `mean` has 4 n numbers: sums of neighbours, their count. */
+/* Smooths one frame of n vertices once. `mean` is scratch space for 4 n numbers: the sum of each
+ * vertex's neighbours and their count. */
 static void smooth(double* xyz, int64_t n, const mimetra_array* triangles, double strength,
                    double* mean) {
   const int32_t* corners = triangles->values;

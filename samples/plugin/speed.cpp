@@ -1,5 +1,6 @@
-// A plugin in C++: the operation `speed` shows how fast each vertex moves, as fields on the mesh.
-// Built as a shared library in a folder of MIMETRA_PLUGIN_PATH: mimetra speed take.npy -o speed.pvd
+// A plugin in C++. Its operation `speed` shows how fast each vertex moves, as fields on the mesh.
+// Build it as a shared library in a folder of MIMETRA_PLUGIN_PATH, and run `mimetra speed take.npy
+// -o speed.pvd`.
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +13,7 @@
 
 namespace {
 
-/// What run() throws, the host reports.
+/// Throws unless the status is MIMETRA_OK. The host reports exceptions from run().
 void check(mimetra_status status, const mimetra_interface* m, mimetra_context* context) {
   if (status != MIMETRA_OK) throw std::runtime_error(m->message(context));
 }

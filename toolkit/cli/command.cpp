@@ -8,7 +8,7 @@ namespace mimetra::cli {
 
 namespace {
 
-/// `text` with unit, choices and default.
+/// Adds unit, choices and default to `text`.
 std::string described(const Parameter& parameter, std::string text) {
   if (!parameter.unit.empty()) text += " [" + parameter.unit + "]";
   if (!parameter.choices.empty()) {
@@ -22,7 +22,7 @@ std::string described(const Parameter& parameter, std::string text) {
   return text;
 }
 
-/// What the short help says; empty for the name alone.
+/// Text of the short help; empty for the name alone.
 std::string in_brief(const Parameter& parameter) {
   if (parameter.brief.empty()) {
     return parameter.group.empty() ? described(parameter, parameter.help) : "";
@@ -53,7 +53,7 @@ std::string value_name(ParameterKind kind) {
   return "";
 }
 
-/// None where a path may end in anything.
+/// Endings of file names; empty if a path may have any ending.
 std::vector<std::string> endings_of(std::vector<std::string> extensions) {
   const auto is_ending = [](const std::string& extension) { return extension.starts_with('.'); };
   return std::ranges::all_of(extensions, is_ending) ? extensions : std::vector<std::string>();
@@ -173,10 +173,10 @@ const Command* find_command(const std::vector<Command>& commands, const std::str
 namespace {
 
 constexpr std::size_t kWidth = 80;
-/// Where explanations begin.
+/// Column where explanations begin.
 constexpr std::size_t kColumn = 25;
 
-/// `text` in lines, of which the first begins at `column` already and the others at `indent`.
+/// Wraps `text` into lines. The first line begins at `column`, the others are indented by `indent`.
 std::string wrapped(const std::string& text, std::size_t column, std::size_t indent) {
   std::string result;
   bool begins_line = true;
@@ -199,7 +199,7 @@ std::string wrapped(const std::string& text, std::size_t column, std::size_t ind
   return result;
 }
 
-/// A name and what it means, beside it where there is room.
+/// A name and its explanation, side by side if there is room.
 std::string entry(const std::string& name, const std::string& text) {
   std::string line = "  " + name;
   const bool has_room = line.size() + 2 <= kColumn;
@@ -207,8 +207,8 @@ std::string entry(const std::string& name, const std::string& text) {
   return line + wrapped(text, kColumn, kColumn) + '\n';
 }
 
-/// The options under a heading; those of which brief help tells the names only stand at the end,
-/// or beside a heading without others.
+/// The options under a heading. Options without a text in the short help follow by name, on the
+/// heading's line if all options lack one.
 std::string section(const Command& command, const std::string& heading, HelpLength length) {
   std::string entries;
   std::vector<std::string> names;

@@ -7,9 +7,9 @@
 
 namespace mimetra::cli {
 
-/// An option as it is typed, whatever it is for.
+/// An option of a command line, for an input, an output, a parameter or the program itself.
 struct CommandOption {
-  /// The heading of those that every command has.
+  /// Heading of the options of every command.
   static constexpr const char* kCommon = "Common";
 
   std::string name;                ///< "radius"
@@ -18,12 +18,13 @@ struct CommandOption {
   std::string help;                ///< with unit, choices and default
   std::vector<std::string> choices = {};
   bool takes_file = false;
-  /// What the names of its files end in, ".json"; none where folders and others are taken too.
+  /// Endings of its files' names, such as ".json"; empty if folders or other files are allowed.
   std::vector<std::string> endings = {};
   bool required = false;
-  /// Heading under which help lists it; none for what the command is about.
+  /// Heading in the help; empty for the command's own subject.
   std::string group = "";
-  /// What the short help says: that without kinds of files; empty where it tells the name only.
+  /// Text of the short help, without kinds of files. If it is empty, the short help shows only the
+  /// name.
   std::string brief = "";
 
   bool is_common() const { return group == kCommon; }
@@ -31,7 +32,7 @@ struct CommandOption {
   bool is_flag() const { return value.empty(); }
 };
 
-/// What a command takes, in the order of its help: what parser, completion and manual are made of.
+/// The arguments of a command, in the order of its help. Parser, completion and manual use them.
 struct Command {
   const Operation* operation;
   std::vector<Parameter> parameters;
@@ -39,24 +40,24 @@ struct Command {
   std::vector<CommandOption> options;
 };
 
-/// Headings of its options in their order, "" for what the command is about at first.
+/// Headings of the options in their order. The first is "", for the command's own subject.
 std::vector<std::string> headings_of(const Command& command);
-/// An option as it is typed: "-o, --out OUT".
+/// Spelling of an option: "-o, --out OUT".
 std::string forms_of(const CommandOption& option);
-/// "mimetra transfer [OPTIONS] -o OUT SOURCE TARGET..."
+/// Usage of a command: "mimetra transfer [OPTIONS] -o OUT SOURCE TARGET..."
 std::string synopsis(const Command& command);
 
-/// Every operation of a table as a command.
+/// Returns every operation of a table as a command.
 std::vector<Command> commands_of(const OperationTable& table);
-/// The one of a name; null where there is none.
+/// Returns the command of a name; null if there is none.
 const Command* find_command(const std::vector<Command>& commands, const std::string& name);
 
 enum class HelpLength {
-  brief,  ///< one screen: options under headings by name, but for the usual ones
+  brief,  ///< one screen: usual options explained, others by name under headings
   all     ///< every option explained
 };
 
-/// What --help says of a command, in lines of 80 characters but for its examples.
+/// Text of --help for a command, in lines of 80 characters except its examples.
 std::string help_page(const Command& command, HelpLength length);
 
 }  // namespace mimetra::cli

@@ -17,7 +17,7 @@ namespace mimetra::cli {
 
 namespace {
 
-/// Every option of a command as it is typed.
+/// All spellings of a command's options.
 std::vector<std::string> option_names(const Command& command) {
   std::vector<std::string> names = {"--help"};
   for (const CommandOption& option : command.options) {
@@ -26,8 +26,8 @@ std::vector<std::string> option_names(const Command& command) {
   return names;
 }
 
-/// The name in "--name=value", "-n5" or "-n"; "" of what is no option. "-name" is one with a hyphen
-/// too few where there is no "-n", and where there is "--name".
+/// Name of the option in "--name=value", "-n5" or "-n"; "" if the argument is not an option.
+/// "-name" counts as a long option without a hyphen if there is no "-n", or if there is "--name".
 std::string option_of(const std::string& argument, const std::vector<std::string>& known) {
   if (argument.size() < 2 || argument[0] != '-') return "";
   if (argument[1] == '-') return argument.substr(0, argument.find('='));
@@ -40,10 +40,10 @@ std::string option_of(const std::string& argument, const std::vector<std::string
   return is_letter ? letter : word;
 }
 
-/// The option that is meant: the nearest, or one that begins as `name` does.
+/// Returns the option that the user probably meant: the nearest, or one with the same beginning.
 std::string meant(const std::string& name, const std::vector<std::string>& known) {
   if (name.size() == 2) {
-    // Any letter is as near as another, but for the same one.
+    // A single letter is equally near to all others, so only its case may differ.
     const std::string small{'-',
                             static_cast<char>(std::tolower(static_cast<unsigned char>(name[1])))};
     return std::ranges::find(known, small) == known.end() ? "" : small;
@@ -60,7 +60,7 @@ std::string meant(const std::string& name, const std::vector<std::string>& known
   return found == known.end() ? "" : *found;
 }
 
-/// What is wrong with "-k 5 10", where a list is "5,10"; "" where there is none.
+/// Explains the mistake in "-k 5 10" for a list "5,10"; "" if there is none.
 std::string split_list(const Command& command, const std::vector<std::string>& arguments) {
   for (const CommandOption& option : command.options) {
     if (!option.value.ends_with(",...")) continue;
@@ -77,7 +77,7 @@ std::string split_list(const Command& command, const std::vector<std::string>& a
   return "";
 }
 
-/// What is wrong with "-k 5 -k 6"; "" where no option with a value is given twice.
+/// Explains the mistake in "-k 5 -k 6"; "" if no option with a value is given twice.
 std::string repeated_option(const Command& command, const std::vector<std::string>& arguments) {
   const std::vector<std::string> known = option_names(command);
   for (const CommandOption& option : command.options) {
@@ -94,8 +94,8 @@ std::string repeated_option(const Command& command, const std::vector<std::strin
   return "";
 }
 
-/// What is wrong with an option whose second hyphen is missing, "-out" for "--out", which the
-/// parser takes for "-o ut"; "" where there is none.
+/// Explains a lost hyphen, such as "-out" for "--out", which the parser reads as "-o ut"; "" if
+/// there is none.
 std::string lost_hyphen(const Command& command, const std::vector<std::string>& arguments) {
   const std::vector<std::string> known = option_names(command);
   for (const std::string& argument : arguments) {
@@ -109,9 +109,9 @@ std::string lost_hyphen(const Command& command, const std::vector<std::string>& 
   return "";
 }
 
-/// What is wrong with many files of one kind in one folder, which a shell has put in place of a
-/// pattern without quotes; "" where there are fewer than three, or, unless the line was `refused`,
-/// they are not of one series with the first input.
+/// Explains many files of one kind in one folder, which a shell has substituted for an unquoted
+/// pattern. Returns "" for fewer than three files. Unless the line was `refused`, also returns ""
+/// if the files do not form one series with the first input.
 std::string unquoted_pattern(const std::vector<std::string>& arguments, bool refused) {
   std::vector<std::filesystem::path> files;
   std::error_code missing;
@@ -137,8 +137,8 @@ std::string unquoted_pattern(const std::vector<std::string>& arguments, bool ref
          pattern.string() + "' in quotes, or name the folder";
 }
 
-/// What is wrong with a line that the parser has `refused` with these words, and what to write
-/// instead.
+/// Explains why the parser refused a line, and what to write instead. `refused` is the parser's
+/// message.
 std::string explained(const std::vector<Command>& commands,
                       const std::vector<std::string>& arguments, const std::string& refused) {
   if (arguments.empty()) return "expected a command; mimetra --help lists them";
@@ -174,7 +174,7 @@ std::string explained(const std::vector<Command>& commands,
   return first + ": " + refused + "; write: " + synopsis(*command);
 }
 
-/// What CLI11 writes into while it parses one command, by name of input or option.
+/// Storage into which CLI11 parses one command, by name of input or option.
 struct Slots {
   std::map<std::string, std::vector<std::string>> inputs;
   std::map<std::string, std::string> values;
@@ -210,7 +210,7 @@ void declare(CLI::App& app, const Command& command, Slots& slots) {
   }
 }
 
-/// An empty name is a mistake, mostly of a script whose variable is not set.
+/// Refuses empty names. Most come from a script with an unset variable.
 void refuse_empty(const CLI::App& app, const Command& command, const Slots& slots) {
   for (const auto& [name, texts] : slots.inputs) {
     if (std::ranges::find(texts, "") != texts.end()) throw UsageError(name + ": is empty");
@@ -221,7 +221,7 @@ void refuse_empty(const CLI::App& app, const Command& command, const Slots& slot
   }
 }
 
-/// Quoted, ~ comes here as it is, and would become a folder of that name.
+/// Refuses a quoted ~, which the shell does not expand and which would become a folder.
 void refuse_tilde(const std::string& output) {
   std::error_code unreadable;
   const std::filesystem::path path = output;
@@ -285,8 +285,8 @@ Request request_of(const CLI::App& app, const Command& command, const Slots& slo
   return request;
 }
 
-/// Help where the line asks for that of a command: "transfer --help", "transfer --help all",
-/// "help transfer".
+/// Help for a command if the line requests it: "transfer --help", "transfer --help all", "help
+/// transfer".
 std::optional<std::string> asked_help(const std::vector<Command>& commands,
                                       const std::vector<std::string>& arguments) {
   const auto asks = [](const std::string& argument) {
@@ -303,7 +303,7 @@ std::optional<std::string> asked_help(const std::vector<Command>& commands,
   return help_page(*command, all ? HelpLength::all : HelpLength::brief);
 }
 
-/// As CLI11 takes them, which knows -k 5 and -k5, but not -k=5.
+/// Reverses the arguments for CLI11. Turns -k=5, which CLI11 does not know, into -k5.
 std::vector<std::string> last_first(const std::vector<std::string>& arguments) {
   std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
   for (std::string& argument : reversed) {
@@ -337,7 +337,7 @@ ParsedLine parse_command_line(const OperationTable& table,
   try {
     app.parse(last_first(arguments));
   } catch (const CLI::CallForHelp&) {
-    // Of a command among other letters, "-qh".
+    // Help for a command among other letters, "-qh".
     return {{}, first ? help_page(*first, HelpLength::brief) : app.help()};
   } catch (const CLI::CallForVersion&) {
     return {{}, app.version()};

@@ -12,7 +12,6 @@ namespace mimetra::cli {
 
 enum class ProgressBar { automatic, always, never };
 
-/// As people choose it.
 constexpr std::string_view choice_name(ProgressBar value) {
   switch (value) {
     case ProgressBar::automatic:
@@ -25,12 +24,13 @@ constexpr std::string_view choice_name(ProgressBar value) {
   return {};
 }
 
-/// One call of the program, taken apart.
+/// One parsed call of the program.
 struct Request {
   const Operation* operation = nullptr;
   std::vector<std::string> arguments;  ///< as typed, without the program's name
   Parameters parameters;
-  std::vector<std::string> files;  ///< besides the inputs and files of options: of --config
+  /// Files read besides the inputs and the files of options: of --config.
+  std::vector<std::string> files;
   std::map<std::string, std::vector<std::string>> inputs;
   std::map<std::string, std::filesystem::path> outputs;
   bool json = false;
@@ -38,7 +38,7 @@ struct Request {
   bool verbose = false;
   bool force = false;
   bool dry_run = false;
-  int threads = 0;  ///< 0 for all there are
+  int threads = 0;  ///< 0 for all available threads
   ProgressBar progress = ProgressBar::automatic;
 };
 
@@ -48,13 +48,13 @@ struct ParsedLine {
   std::string text;
 };
 
-/// Parses a command line against the table. Throws UsageError ("did you mean" included), IoError
-/// for a configuration file that cannot be read.
+/// Parses a command line against the table. Throws UsageError with suggestions ("did you mean"),
+/// and IoError for a configuration file that cannot be read.
 ParsedLine parse_command_line(const OperationTable& table,
                               const std::vector<std::string>& arguments);
 
-/// What `--version` says after the version: the licence, the instructions this was built for, and
-/// the libraries it is made with.
+/// Text of `--version` after the version: the licence, the instruction set of the build, and the
+/// linked libraries.
 std::string_view libraries();
 
 }  // namespace mimetra::cli

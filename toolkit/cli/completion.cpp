@@ -16,12 +16,12 @@ std::string replaced(const std::string& text, char old, const std::string& by) {
   return result;
 }
 
-/// `text` in single quotes; a quote inside leaves them for a moment.
+/// Puts `text` in single quotes. A quote in the text ends them for a moment.
 std::string in_quotes(const std::string& text) {
   return "'" + replaced(text, '\'', "'\\''") + "'";
 }
 
-/// The same for fish, where a backslash escapes inside too.
+/// Puts `text` in quotes for fish, where a backslash escapes inside quotes.
 std::string in_fish_quotes(const std::string& text) {
   return "'" + replaced(replaced(text, '\\', "\\\\"), '\'', "\\'") + "'";
 }
@@ -35,7 +35,7 @@ std::string all_forms(const Command& command) {
   return joined(forms, " ");
 }
 
-/// For _arguments: '(-o --out)'{-o,--out}'[help]:value:_files'.
+/// Argument of zsh's _arguments: '(-o --out)'{-o,--out}'[help]:value:_files'.
 std::string zsh_argument(const CommandOption& option) {
   std::string help;
   for (const char c : option.help) {
@@ -65,7 +65,7 @@ std::string zsh_argument(const CommandOption& option) {
   return line + in_quotes(rest);
 }
 
-/// What files a value may be: "no", "yes", or what their names end in.
+/// Kinds of files that a value may be: "no", "yes", or the endings of their names.
 std::string bash_files(const CommandOption& option) {
   if (!option.takes_file) return "no";
   return option.endings.empty() ? "yes" : joined(option.endings, " ");
@@ -162,7 +162,8 @@ std::string zsh_completion(const std::vector<Command>& commands) {
 std::string fish_files(const CommandOption& option) {
   if (!option.takes_file) return " -x";
   if (option.endings.empty()) return " -r -F";
-  // Of one ending: what further arguments mean depends on the version of fish.
+  // Passes one ending per call, because further arguments mean different things in versions of
+  // fish.
   return " -x -a '(__fish_complete_suffix " + joined(option.endings, "; __fish_complete_suffix ") +
          ")'";
 }

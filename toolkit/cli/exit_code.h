@@ -7,8 +7,8 @@
 
 namespace mimetra::cli {
 
-/// `text` as a terminal may be given it: names of files and of what files hold can be anything. All
-/// but lines, tabs and printable UTF-8 is written as \xHH, so that nothing acts on the terminal.
+/// Makes `text` safe for a terminal, because names of files and texts in files are arbitrary.
+/// Escapes all characters except newlines, tabs and printable UTF-8 as \xHH.
 std::string terminal_text(std::string_view text);
 
 /// Exit codes of the command (docs/errors.md).
@@ -37,7 +37,7 @@ constexpr ExitMeaning kExitMeanings[] = {
     {kOutput, "an output cannot be written, or exists and may not be replaced"},
     {kInterrupted, "interrupted; no output is half-written"}};
 
-/// Messages of the command go to `stream` from now on.
+/// Directs messages of the command to `stream`.
 void say_to(std::ostream& stream);
 
 /// Calls `run`, prints its error, and returns the exit code. Throws std::bad_alloc as `run` does.

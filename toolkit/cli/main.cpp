@@ -42,8 +42,8 @@
 
 namespace {
 
-/// Bytes that were asked for when memory was last refused to the program's own code; 0 where that
-/// did not happen, or happened in a library of others.
+/// Size of the last allocation that failed in the program's own code, in bytes. 0 if none failed,
+/// or only allocations of third-party libraries.
 std::atomic<std::size_t> failed_allocation = 0;
 
 void* noted(void* memory, std::size_t bytes) {
@@ -53,8 +53,8 @@ void* noted(void* memory, std::size_t bytes) {
 
 }  // namespace
 
-// std::bad_alloc does not say how much was asked for. The linker sends the program's calls here
-// (--wrap, in CMakeLists.txt); __real_NAME is the function itself.
+// std::bad_alloc does not contain the requested size. The linker redirects the program's calls to
+// these functions (--wrap, in CMakeLists.txt); __real_NAME is the original function.
 // NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): the linker's names
 extern "C" {
 void* __real_malloc(std::size_t bytes);
@@ -102,8 +102,8 @@ void set_level(const mimetra::cli::Request& request) {
                                       : spdlog::level::warn);
 }
 
-/// Parses, and warns of what was left out of the table: before an error that may come of it, but
-/// not to those who want errors only.
+/// Parses the command line and warns about plugins that could not be added. The warnings precede an
+/// error that they may explain. A line with --quiet suppresses them.
 mimetra::cli::ParsedLine parse(const mimetra::OperationTable& table,
                                const std::vector<std::string>& arguments,
                                const std::vector<std::string>& left_out) {
@@ -121,7 +121,7 @@ mimetra::cli::ParsedLine parse(const mimetra::OperationTable& table,
   }
 }
 
-/// The operations of all parts that were built.
+/// Adds the operations of all parts of this build.
 void add_built(mimetra::OperationTable& table) {
   mimetra::add_toolkit(table);
   mimetra::add_markers(table);
@@ -162,18 +162,18 @@ std::string memory_message() {
          " are held; take fewer frames with --frames";
 }
 
-/// A pipe: handlers of signals may write to one, and do little else.
+/// A pipe, because signal handlers may write to one and do little else.
 std::array<int, 2> interrupts = {-1, -1};
 
-/// Waits until the pipe can be read; for ever if `milliseconds` is -1.
+/// Waits until the pipe is readable, or without limit if `milliseconds` is -1.
 void wait_for_interrupt(int milliseconds) {
   pollfd pipe{interrupts[0], POLLIN, 0};
   while (poll(&pipe, 1, milliseconds) < 0 && errno == EINTR) {
   }
 }
 
-/// Gives an interrupted run a moment to end at its next step; then, or at a second interrupt,
-/// removes temporary files and ends the process. A library's factorization has no steps.
+/// Gives an interrupted run a moment to end at its next step. Then, or at a second interrupt,
+/// removes temporary files and ends the process. Factorizations in libraries have no steps.
 void end_after_interrupt() {
   constexpr int kMoment = 800;
   wait_for_interrupt(-1);
@@ -181,7 +181,7 @@ void end_after_interrupt() {
   if (read(interrupts[0], &byte, 1) != 1) return;
   wait_for_interrupt(kMoment);
   mimetra::remove_pending_outputs();
-  // By now another thread may hold what streams lock.
+  // Another thread may hold a lock of the streams now.
   constexpr std::string_view kText = "\nmimetra: error: cancelled\n";
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kText.data(), kText.size());
   _exit(mimetra::cli::kInterrupted);
@@ -192,14 +192,15 @@ void handle_signal(int) {
   if (write(interrupts[1], "!", 1) < 0) _exit(mimetra::cli::kInterrupted);
 }
 
-/// An interrupted run leaves nothing half-written. Exceeding a limit of the system is an error.
+/// Installs handlers so that an interrupted run leaves no half-written output. Exceeding a limit on
+/// file size is an error instead of a signal.
 void take_signals() {
   if (pipe2(interrupts.data(), O_CLOEXEC | O_NONBLOCK) == 0) {
     std::thread(end_after_interrupt).detach();
   }
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const auto before = std::signal(signal, handle_signal);
-    if (before == SIG_IGN) std::signal(signal, SIG_IGN);  // as nohup has it
+    if (before == SIG_IGN) std::signal(signal, SIG_IGN);  // as nohup sets it
   }
   std::signal(SIGXFSZ, SIG_IGN);
 }
@@ -215,11 +216,11 @@ int exit_code_of(const std::vector<std::string>& arguments, const mimetra::Conte
 }
 
 #ifdef MIMETRA_HAS_MPI
-/// Runs as one of the processes that mpirun started; one that fails ends all of them.
+/// Runs as one of the processes that mpirun started; if one fails, all end.
 int shared_exit_code(const std::vector<std::string>& arguments) {
   const mimetra::cli::MpiRanks ranks;
   mimetra::share_memory(ranks.on_this_machine());
-  // The first process reports an error that all of them have.
+  // Rank 0 reports errors that all processes have.
   const bool is_first = ranks.rank() == 0;
   std::ostringstream said;
   if (!is_first) mimetra::cli::say_to(said);
@@ -233,8 +234,8 @@ int shared_exit_code(const std::vector<std::string>& arguments) {
   ranks.end_all(code);
 }
 #else
-/// Whether a program that starts processes of MPI has started this one itself: scripts that run
-/// there may well start it, and hand on their environment.
+/// Whether mpirun started this process directly. Scripts under mpirun may start it as well, and
+/// pass on their environment.
 bool is_started_by_mpirun() {
   std::ifstream file("/proc/" + std::to_string(getppid()) + "/comm");
   std::string parent;
@@ -258,8 +259,8 @@ int single_exit_code(const std::vector<std::string>& arguments) {
 }
 #endif
 
-/// A file that is opened later would get the place of standard output or error where that is
-/// closed, and what is said would be written into it. Writing fails as before.
+/// Opens closed standard streams on /dev/null. Otherwise a file that is opened later would take
+/// their place, and messages would be written into it. Writing to them fails as before.
 void keep_standard_streams() {
   for (int stream = 0; stream <= 2; ++stream) {
     if (fcntl(stream, F_GETFD) < 0) open("/dev/null", O_RDONLY | O_CLOEXEC);

@@ -11,7 +11,7 @@ namespace mimetra::cli {
 
 namespace {
 
-/// Text as roff shows it: a hyphen is a minus sign, a leading dot is not a request.
+/// Escapes text for roff: hyphens become minus signs, a leading dot is not a request.
 std::string roff(const std::string& text) {
   std::string result = text.starts_with('.') || text.starts_with('\'') ? "\\&" : "";
   for (const char c : text) {
@@ -21,7 +21,7 @@ std::string roff(const std::string& text) {
   return result;
 }
 
-/// Text in a cell of a Markdown table.
+/// Escapes text for a cell of a Markdown table.
 std::string cell(const std::string& text) {
   std::string result;
   for (const char c : text) {
@@ -55,7 +55,7 @@ std::string command_section(const Command& command) {
   return text;
 }
 
-/// Options of every command, from one that has outputs.
+/// Options of every command, from the command with the most of them.
 std::vector<CommandOption> common_options(const std::vector<Command>& commands) {
   std::vector<CommandOption> common;
   for (const Command& command : commands) {

@@ -12,10 +12,10 @@
 namespace mimetra::cli {
 namespace {
 
-/// Numbers of one message: MPI counts them by ints.
+/// Largest number of values in a message, because MPI counts with int.
 constexpr std::size_t kMost = std::size_t{1} << 27;
 
-/// Calls `pass` with all numbers, in pieces that one message takes.
+/// Calls `pass` with all numbers, in pieces that fit one message.
 template <typename Number, typename Pass>
 void in_pieces(std::span<Number> numbers, const Pass& pass) {
   for (std::size_t done = 0; done < numbers.size(); done += kMost) {
@@ -27,7 +27,7 @@ void in_pieces(std::span<Number> numbers, const Pass& pass) {
 }  // namespace
 
 MpiRanks::MpiRanks() {
-  // Only this thread talks to others.
+  // Only this thread communicates.
   int provided = MPI_THREAD_SINGLE;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
@@ -58,7 +58,8 @@ void MpiRanks::broadcast(int from, std::span<double> numbers) const {
 }
 
 void MpiRanks::meet(const std::function<bool()>& goes_on) const {
-  // A barrier that waits would hear of no signal. Twice, as one that has come may have died since.
+  // A blocking barrier would not notice signals. The second round detects processes that died after
+  // the first.
   for (int round = 0; round < 2; ++round) {
     MPI_Request all_are_here = MPI_REQUEST_NULL;
     MPI_Ibarrier(MPI_COMM_WORLD, &all_are_here);

@@ -4,12 +4,12 @@
 
 namespace mimetra::cli {
 
-/// The processes that mpirun started, as ranks. There is one of it, for as long as the program
-/// runs, on the thread that makes it.
+/// The processes that mpirun started, as ranks. Create one object on one thread and keep it as long
+/// as the program runs.
 class MpiRanks : public Ranks {
  public:
   MpiRanks();
-  /// Waits for the others.
+  /// Waits for the other processes.
   ~MpiRanks() override;
   MpiRanks(const MpiRanks&) = delete;
   MpiRanks& operator=(const MpiRanks&) = delete;
@@ -21,7 +21,7 @@ class MpiRanks : public Ranks {
   void broadcast(int from, std::span<double> numbers) const override;
   void meet(const std::function<bool()>& goes_on) const override;
 
-  /// How many of the processes share this one's machine, with itself.
+  /// Number of processes on this machine, including this one.
   int on_this_machine() const;
 
   /// Ends all processes; mpirun returns `code`.

@@ -33,7 +33,7 @@ namespace mimetra::cli {
 
 namespace {
 
-/// "300 frames of 6706 vertices", or what else a value is made of.
+/// Size of a value, such as "300 frames of 6706 vertices".
 std::string size_of(const NamedData& value) {
   const Data& data = value.data;
   if (const auto* sequence = std::get_if<FieldSequence>(&data)) {
@@ -67,7 +67,7 @@ bool is_in_memory(const Data& data) {
   return sequence && sequence->is_in_memory();
 }
 
-/// What a run would do with its inputs once they are read: the outcome of --dry-run.
+/// Outcome of --dry-run: what a run would do after reading its inputs.
 Outcome planned(const Operation& operation, const Invocation& invocation) {
   const double computing = operation.memory ? operation.memory(invocation) : 0;
   Json inputs = Json::array(), outputs = Json::array();
@@ -116,8 +116,8 @@ Outcome planned(const Operation& operation, const Invocation& invocation) {
 
 std::atomic<bool> interrupted = false;
 
-/// A line on the terminal with the percentage and, each second, the time since the start, which
-/// shows that a long step is at work.
+/// A progress line on the terminal with the percentage. The time since the start, updated each
+/// second, shows that a long step is still active.
 class Bar {
  public:
   Bar(std::string title, bool shown) : title_(std::move(title)), shown_(shown) {
@@ -133,7 +133,7 @@ class Bar {
     return !interrupted;
   }
 
-  /// Says something in the place of the line.
+  /// Prints something in place of the line.
   void say(const std::function<void()>& text) {
     const std::scoped_lock lock(mutex_);
     clear();
@@ -180,7 +180,7 @@ class Bar {
   std::mutex mutex_;
   bool shown_;
   bool is_drawn_ = false;
-  std::jthread ticker_;  // ends before the others do
+  std::jthread ticker_;  // destroyed first, so the thread ends before the other members
 };
 
 bool shows_bar(const Request& request) {
@@ -188,7 +188,7 @@ bool shows_bar(const Request& request) {
   return request.progress == ProgressBar::always || isatty(STDERR_FILENO);
 }
 
-/// What the program asks of the operation.
+/// Converts the command line to a request for the operation.
 CallRequest call_of(const Request& request, const Context& context, Progress progress) {
   CallRequest call;
   call.operation = request.operation;
@@ -218,7 +218,7 @@ void print_result(const Request& request, const Outcome& outcome,
                                            (has_outputs ? "; the outputs are in place" : ""));
 }
 
-/// Computes what the operation shares, in silence; the first process writes.
+/// Computes this process's part of a shared operation, without output; rank 0 writes.
 void help_first(const OperationTable& table, const Request& request, const Context& context) {
   if (!request.operation->shared || request.dry_run) return;
   Call call(table, call_of(request, context, [](double) { return !interrupted; }));
@@ -227,7 +227,7 @@ void help_first(const OperationTable& table, const Request& request, const Conte
   call.write();
 }
 
-/// What a run that wrote something has cost.
+/// Time and memory of a run that wrote files.
 std::string cost(const Call& call) {
   const FinishedRun& run = call.finished();
   return "read in " + readable(run.read_seconds) + " s, computed in " + readable(run.run_seconds) +

@@ -7,15 +7,16 @@
 
 namespace mimetra::cli {
 
-/// As people read it: "238 MB".
+/// Size in text: "238 MB".
 std::string megabytes(double bytes);
 
 /// Ends the process's current work with Cancelled at the next progress report; async-signal-safe.
 void interrupt();
 
-/// Reads the inputs, runs the operation, writes outputs and manifest, prints the result on stdout
-/// and everything else on stderr. Several ranks all call it: what they share they compute together,
-/// and the first alone does all else. Of the context only the ranks count. Throws what these throw.
+/// Reads the inputs, runs the operation, and writes outputs and manifest. Prints the result on
+/// stdout and everything else on stderr. All ranks call it: they compute shared operations
+/// together, and only rank 0 does the rest. Only the ranks of `context` count. Throws what Call
+/// throws.
 void run_command(const OperationTable& table, const Request& request, const Context& context = {});
 
 }  // namespace mimetra::cli

@@ -12,9 +12,10 @@
 namespace mimetra {
 namespace {
 
-/// Faces of people differ by up to about 0.15, from a caricature's by 0.25.
+/// Residual of doubtful markers. Faces of people differ by up to about 0.15, and from a caricature
+/// by 0.25.
 constexpr double kDoubtfulResidual = 0.3;
-/// With fewer, parts of a face may lack markers.
+/// With fewer markers, parts of a face may have none.
 constexpr std::size_t kFewMarkers = 25;
 
 std::string summary_of(const std::string& name, const FaceLandmarks& face) {
@@ -26,7 +27,8 @@ std::string summary_of(const std::string& name, const FaceLandmarks& face) {
          " % of the distance between the eyes' outer corners";
 }
 
-/// Where a walk from vertex to vertex, always nearer to `place`, ends: on the same lip or lid.
+/// End of a walk along edges that always gets nearer to `place`. The walk stays on the same lip or
+/// lid.
 VertexIndex nearest_by_edges(VertexIndex vertex, const Eigen::Vector3d& place,
                              const TriMesh& mesh) {
   const auto distance = [&](VertexIndex v) {
@@ -44,7 +46,6 @@ VertexIndex nearest_by_edges(VertexIndex vertex, const Eigen::Vector3d& place,
   return vertex;
 }
 
-/// Pairs of landmarks that both heads have.
 using LandmarkPairs = std::vector<std::pair<FaceLandmark, FaceLandmark>>;
 
 LandmarkPairs pairs_of(const FaceLandmarks& source, const FaceLandmarks& target) {
@@ -56,7 +57,8 @@ LandmarkPairs pairs_of(const FaceLandmarks& source, const FaceLandmarks& target)
   return pairs;
 }
 
-/// A landmark lies beside its vertex of the source; the target's vertex is to lie beside it alike.
+/// Chooses target vertices whose offset from the landmark matches the source's. Of pairs with one
+/// target vertex, only the first stays.
 void match_vertices(LandmarkPairs& pairs, const Positions& source, const TriMesh& target) {
   const auto count = static_cast<Eigen::Index>(pairs.size());
   if (count < kFewestMarkers) return;

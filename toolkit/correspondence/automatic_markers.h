@@ -10,50 +10,52 @@
 
 namespace mimetra {
 
-/// Markers that no hand has placed, and how far they can be relied on.
+/// Markers that were found automatically, with figures on their reliability.
 struct AutomaticMarkers {
   std::vector<Marker> markers;
-  std::vector<int> landmarks;  ///< of iBUG's (0 to 67), one for each marker
+  std::vector<int> landmarks;  ///< iBUG number (0 to 67) of each marker
   FaceLandmarks source, target;
-  /// What an affine map leaves of the markers, as affine_residual(): of two people's faces about
-  /// 0.1, of landmarks at wrong places more.
+  /// affine_residual() of the markers. It is about 0.1 between the faces of two people, and larger
+  /// if landmarks are misplaced.
   double affine_residual = 0;
-  /// Those that are not where the others say (doubtful_markers()), in words.
+  /// Descriptions of doubtful_markers().
   std::vector<std::string> doubtful = {};
 
-  /// For people: how many there are, and for each head how many landmarks were found and how well
-  /// the views agree.
+  /// Lines for users: the number of markers and, for each head, the number of landmarks and the
+  /// agreement of the views.
   std::vector<std::string> summary(const std::string& source_name,
                                    const std::string& target_name) const;
-  /// What makes them doubtful.
+  /// Reasons to doubt the markers; empty if there are none.
   std::vector<std::string> warnings() const;
 };
 
-/// "right eye (landmark 37)", for 36.
+/// Name such as "right eye (landmark 37)", for 36.
 std::string landmark_name(int landmark);
 
-/// Looks for markers between one head and others; its own face is looked for once.
+/// Searches for markers between one head and others. The first head's own face is searched for
+/// once.
 class MarkerSearch {
  public:
-  /// Keeps the finder; an empty one finds nothing.
+  /// An empty finder suffices if the landmarks of both heads are known.
   MarkerSearch(Head source, LandmarkFinder finder, const FaceSearchOptions& options = {});
 
-  /// Pairs the landmarks that find_landmarks() gives for both heads. Landmarks that are known of
-  /// one head only do not count: a finder errs alike on both, and other hands put brows elsewhere.
-  /// A vertex of the target lies beside its landmark as the source's does beside its own.
+  /// Pairs the landmarks that find_landmarks() gives for both heads. Known landmarks count only if
+  /// both heads have some. Otherwise both heads are searched, because a finder errs alike on both,
+  /// while people place brows elsewhere. The target's vertex of a searched landmark is offset from
+  /// it as the source's vertex is from the source's landmark.
   ///
-  /// Throws what find_landmarks() throws, and MismatchError where the landmarks of both are too few
-  /// for markers, or lie in one plane.
+  /// Throws what find_landmarks() throws. Throws MismatchError if too few landmarks are common to
+  /// both heads, or if they are coplanar.
   AutomaticMarkers operator()(const Head& target, const Context& context = {});
 
  private:
   Head source_;
   LandmarkFinder finder_;
   FaceSearchOptions options_;
-  std::optional<FaceLandmarks> found_;  // of the source
+  std::optional<FaceLandmarks> found_;  // landmarks of the source
 };
 
-/// A search for one target.
+/// Searches for the markers of one target.
 AutomaticMarkers automatic_markers(const Head& source, const Head& target,
                                    const LandmarkFinder& finder,
                                    const FaceSearchOptions& options = {},

@@ -1,4 +1,4 @@
-// CGAL's tree takes long to compile: no other file of the library sees it.
+// Only this file includes CGAL's tree, which takes long to compile.
 
 #include "toolkit/correspondence/closest_surface.h"
 
@@ -31,11 +31,11 @@ using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
 using Box = Tree::Bounding_box;
 using Eigen::Vector3d;
 
-/// Shares of a triangle's corners in a point of it.
+/// Barycentric coordinates of a point in a triangle.
 using Shares = Vector3d;
 
-/// [Ericson. Real-Time Collision Detection, 2005], section 5.1.5: which corner, edge or inside is
-/// nearest; shares of corners that take no part are exactly 0.
+/// Barycentric coordinates of the nearest point: a corner, on an edge, or inside. Corners that take
+/// no part have exactly 0. [Ericson. Real-Time Collision Detection, 2005], section 5.1.5
 Shares closest_shares(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   const Vector3d ab = b - a, ac = c - a;
   const double d1 = ab.dot(p - a), d2 = ac.dot(p - a);
@@ -100,7 +100,7 @@ struct ClosestSurface::State {
   Vector3d corner(int t, int number) const { return positions.row(triangles(t, number)); }
   bool faces(int t, const Vector3d& normal) const { return normals.row(t).dot(normal) > 0; }
 
-  /// Squared distance to a triangle, and the shares of its nearest point.
+  /// Squared distance to a triangle, and its nearest point.
   std::pair<double, Shares> nearest_in(int t, const Vector3d& point) const {
     const Vector3d a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
     const Shares shares = closest_shares(point, a, b, c);
@@ -108,11 +108,11 @@ struct ClosestSurface::State {
     return {(at - point).squaredNorm(), shares};
   }
 
-  /// Whether the point of these shares in triangle t is on the border.
+  /// Returns true if a point of triangle t is on the border.
   bool on_border(int t, const Shares& shares) const {
     for (int c = 0; c < 3; ++c) {
       if (shares[c] == 1 && border_vertex[triangles(t, c)]) return true;
-      // The edge from corner c leaves out the corner after the next.
+      // The edge from corner c is opposite to corner c + 2.
       if (shares[(c + 2) % 3] == 0 && border_edge[3 * t + c]) return true;
     }
     return false;
@@ -129,8 +129,8 @@ struct ClosestSurface::State {
 
 namespace {
 
-/// Walks CGAL's tree, nearer boxes first. `Measure(triangle)` is a squared distance and shares; it
-/// is asked of triangles that face the right way.
+/// Walks CGAL's tree, nearer boxes first. `Measure(triangle)` returns a squared distance and
+/// barycentric coordinates. It is called only for triangles for which `Faces` is true.
 template <typename Faces, typename Measure>
 class NearestFirst {
  public:

@@ -17,19 +17,20 @@
 namespace mimetra {
 namespace {
 
-/// Triangles whose edges are shorter may still be this share of the target's size apart.
+/// Partners may be this share of the target's size apart, even if their edges are shorter.
 constexpr double kPairReach = 0.02;
 
 constexpr int kTrianglesAtATime = 256;
 
-/// Limits of the verdict: shares of the target's size, and of triangles. A face that fits to 1
-/// % shows the same wrinkles in other places; folds turn deformations around.
+/// Limits of the verdict, as shares of the target's size and of triangles. With residuals of 1 %,
+/// wrinkles appear in other places. Folds reverse deformations.
 constexpr double kGoodResidual = 0.005, kUsableResidual = 0.01;
 constexpr double kGoodFolds = 0.001, kUsableFolds = 0.01;
-/// A mask shows half of a head; with less than this, other things than faces were paired.
+/// A mask shows half of a head. If more is without a partner, the meshes are probably not both
+/// faces.
 constexpr double kMostWithoutPartner = 0.9;
 
-/// Triangles of the parts that a marker reaches, and their numbers.
+/// Triangles of the parts that a marker reaches.
 struct ReachedTriangles {
   ReachedTriangles(const Positions& positions, const Triangles& all,
                    const std::vector<bool>& reached) {
@@ -40,10 +41,10 @@ struct ReachedTriangles {
   }
 
   std::vector<int> numbers;
-  Triangles triangles;  ///< on the lowest vertices of each place
+  Triangles triangles;  ///< on welded vertices
 };
 
-/// A surface with what its triangles are asked for.
+/// A surface and the properties of its triangles that pairing needs.
 struct PairedSurface {
   PairedSurface(Positions own_positions, Triangles own_triangles)
       : positions(std::move(own_positions)),
@@ -69,7 +70,6 @@ struct PairedSurface {
   ClosestSurface surface;
 };
 
-/// Calls `work(t)` for each triangle.
 template <typename Work>
 void for_each_triangle(int count, const Work& work, const Context& context) {
   const auto work_on_block = [&](int block) {
@@ -79,10 +79,10 @@ void for_each_triangle(int count, const Work& work, const Context& context) {
   parallel_for((count + kTrianglesAtATime - 1) / kTrianglesAtATime, work_on_block, context);
 }
 
-/// What `side`'s triangles find on `other`.
+/// Results of a search for each triangle of one surface on the other.
 struct Partners {
-  std::vector<int> partner;   ///< -1 where there is none
-  Eigen::VectorXd residuals;  ///< distances from its surface
+  std::vector<int> partner;   ///< -1 if there is none
+  Eigen::VectorXd residuals;  ///< distances from the other surface
 };
 
 Partners found_on(const PairedSurface& side, const PairedSurface& other, double reach,
@@ -105,7 +105,7 @@ Partners found_on(const PairedSurface& side, const PairedSurface& other, double 
   return found;
 }
 
-/// The partners of each triangle of `target`, ascending; rows of both surfaces.
+/// Partners of each triangle of `target`, ascending, as rows of both surfaces.
 std::vector<std::vector<int>> partners_of(const PairedSurface& target, const Partners& of_target,
                                           const Partners& of_source) {
   std::vector<std::vector<int>> partners(target.triangles.rows());
@@ -114,7 +114,8 @@ std::vector<std::vector<int>> partners_of(const PairedSurface& target, const Par
   }
   for (std::size_t s = 0; s < of_source.partner.size(); ++s) {
     const int t = of_source.partner[s];
-    // Where the target finds nothing its triangle has no place inside the source's surface.
+    // If the target's triangle found no partner, its centroid does not project into the source's
+    // surface.
     if (t < 0 || of_target.partner[t] < 0 || of_target.partner[t] == static_cast<int>(s)) continue;
     partners[t].push_back(static_cast<int>(s));
   }
@@ -122,7 +123,8 @@ std::vector<std::vector<int>> partners_of(const PairedSurface& target, const Par
   return partners;
 }
 
-/// Triangles with their shares of the areas. \pre `rows` of the surface, whose numbers they are
+/// Triangles and their shares of the total area. \pre `rows` belong to the surface, and `numbers`
+/// are its triangles' numbers
 std::vector<Correspondence::Part> by_area(const std::vector<int>& rows,
                                           const std::vector<int>& numbers,
                                           const PairedSurface& surface) {
@@ -217,7 +219,7 @@ namespace {
 
 using Vertices = std::vector<VertexIndex>;
 
-/// The vertices of each part that has triangles, all of whose vertices are not reached.
+/// Vertices of each connected part with area that no marker reaches.
 std::vector<Vertices> unreached_parts(const Positions& positions, const Triangles& triangles,
                                       const std::vector<bool>& reached) {
   const SurfaceParts parts = surface_parts(positions, triangles);
@@ -233,7 +235,7 @@ std::vector<Vertices> unreached_parts(const Positions& positions, const Triangle
   return result;
 }
 
-/// Those of some vertices that are nearest to a place.
+/// The 200 vertices among some that are nearest to a place, ascending.
 Vertices nearest_to(const Eigen::RowVector3d& place, const Positions& positions,
                     const Vertices& among) {
   constexpr std::size_t kAround = 200;
@@ -253,7 +255,7 @@ Vertices nearest_to(const Eigen::RowVector3d& place, const Positions& positions,
   return nearest;
 }
 
-/// The fit with the parts that no marker reaches where the surface around them has gone.
+/// Fit in which unreached parts have moved with the surface around them.
 Positions carried_parts(const SurfaceFit& fit, const TriMesh& source,
                         const std::vector<Vertices>& parts) {
   Vertices reached;
@@ -266,7 +268,7 @@ Positions carried_parts(const SurfaceFit& fit, const TriMesh& source,
   };
   Positions carried = fit.positions;
   try {
-    // A flat place alone does not tell left from right.
+    // A flat neighbourhood alone does not determine left and right.
     const Handedness handedness =
         fitted_to(reached).mirrors() ? Handedness::mirrored : Handedness::kept;
     for (const Vertices& part : parts) {
@@ -275,12 +277,12 @@ Positions carried_parts(const SurfaceFit& fit, const TriMesh& source,
       carried(part, Eigen::all) = fitted_to(around, handedness).apply(at_rest);
     }
   } catch (const MismatchError&) {
-    return carried;  // points on a line tell no rotation: the similarity of the markers stays
+    return carried;  // collinear points determine no rotation; the markers' similarity remains
   }
   return carried;
 }
 
-/// Whether most of a part has partners near to it.
+/// Returns true if most of a part has partners nearby.
 bool is_paired(const Correspondence& pairs, const std::vector<int>& triangles, double size) {
   constexpr double kMost = 0.75, kNear = 0.1;
   double residuals = 0;
@@ -294,7 +296,7 @@ bool is_paired(const Correspondence& pairs, const std::vector<int>& triangles, d
          residuals <= kNear * size * paired;
 }
 
-/// `pairs` with the pairs of parts that no marker reaches.
+/// `pairs` plus the pairs of parts that no marker reaches.
 Correspondence with_unmarked_parts(Correspondence pairs, const SurfaceFit& fit,
                                    const TriMesh& source, const TriMesh& target,
                                    const Context& context) {
@@ -339,7 +341,7 @@ Correspondence with_unmarked_parts(Correspondence pairs, const SurfaceFit& fit,
   return joined;
 }
 
-/// Of `triangles`, those of `counted` only.
+/// Number of folded triangles among those `counted`.
 int folded_triangles(const Positions& positions, const Triangles& triangles,
                      const std::vector<bool>& counted) {
   const Positions at_vertices = vertex_normals(positions, triangles);
@@ -353,7 +355,7 @@ int folded_triangles(const Positions& positions, const Triangles& triangles,
   return folded;
 }
 
-/// With triangles that lead the other way round.
+/// Mesh with the opposite orientation of triangles.
 TriMesh turned_over(TriMesh mesh) {
   mesh.connectivity.triangles.col(1).swap(mesh.connectivity.triangles.col(2));
   return mesh;

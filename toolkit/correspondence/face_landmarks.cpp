@@ -24,36 +24,39 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// A landmark that fell beside the surface is carried to pixels that are as near as this share of
-/// the drawing.
+/// A landmark beside the surface is projected to the nearest pixel within this share of the
+/// drawing.
 constexpr double kReach = 0.03;
 
-/// Drawings of a whole mesh, against those of a face alone: a head's face has the finder's 80
-/// pixels; that of a body, an eighth of its height, needs more.
+/// Sizes of the drawings of a whole mesh, relative to drawings of a face. In the first, a head's
+/// face has the 80 pixels that the finder needs. The face of a body, an eighth of its height, needs
+/// the second.
 constexpr std::array<double, 2> kOfWholeMesh = {2.0 / 3, 2};
-/// A body of fewer vertices has no face that a finder would know.
+/// A body with fewer vertices has no recognisable face.
 constexpr Eigen::Index kFewestOfBody = 2000;
-/// What is drawn is larger than the mesh by this factor: detectors want a margin.
+/// Ratio of the drawn square to the mesh, because detectors need a margin.
 constexpr double kMargin = 1.15;
 
-/// From above, and a little from each side, as rooms are lit.
+/// Lights from above and slightly from each side, as in rooms.
 const std::array<Vector3d, 3> kLights = {Vector3d(0, 0.5, 1), Vector3d(-0.7, 0.5, 1),
                                          Vector3d(0.7, 0.5, 1)};
 
-/// Eyes lie behind lips: the line between them leans back by about this from the upright, in
-/// degrees.
+/// Tilt of the line from lips to eyes against the vertical, in degrees. Eyes lie farther back than
+/// lips.
 constexpr double kLean = 15;
 
-/// Degrees to the side and up. Faces are found up to about 30; the farther, the less exactly.
+/// Degrees to the side and up. Finders see faces up to about 30 degrees, with less accuracy at
+/// larger angles.
 constexpr std::array<std::pair<double, double>, 5> kTurns = {
     {{0, 0}, {-14, 0}, {14, 0}, {0, -10}, {0, 10}}};
 constexpr int kFaceSamples = 3;
-/// Side of the square around a face, over the radius of its landmarks: chin and forehead are in it.
+/// Side of the square around a face relative to its landmarks' radius. The square includes chin and
+/// forehead.
 constexpr double kSquare = 7;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// The 24 rotations that carry axes to axes.
+/// The 24 rotations that map axes to axes.
 std::vector<Matrix3d> axis_rotations() {
   std::vector<Matrix3d> rotations;
   const auto axis = [](int number) -> Vector3d {
@@ -88,7 +91,7 @@ std::vector<MeshView> views_along_axes(const Positions& positions, int pixels) {
   return views;
 }
 
-/// The nearest of the pixels that show what is wanted; nothing where none is within reach.
+/// Nearest pixel that shows a wanted triangle; no triangle if there is none within reach.
 SeenPlace nearest_place(const MeshDrawing& drawing, const Eigen::RowVector2d& at,
                         const std::function<bool(int)>& wanted) {
   const double reach = kReach * drawing.image.width;
@@ -142,7 +145,7 @@ std::optional<FacePlace> face_place(const SeenFace& seen) {
   const Vector3d right = (left_eye - right_eye).normalized();
   const Vector3d front = right.cross((left_eye + right_eye) / 2 - lips).normalized();
   const Vector3d& tip = seen.points[30]->position;
-  // The inside of a mask looks like a face too.
+  // The inside of a mask also looks like a face.
   if (!((tip - (left_eye + right_eye + lips) / 3).dot(front) > 0)) return {};
   const Vector3d level = Eigen::AngleAxisd(kLean * kDegree, right) * front;
   FacePlace face;
@@ -158,8 +161,8 @@ std::optional<FacePlace> face_place(const SeenFace& seen) {
 
 namespace {
 
-/// What is seen in the drawing along one of the mesh's axes, up along another, whose face is the
-/// most certain; none where no drawing shows a face. All of `positions` are in the drawings.
+/// Most certain face in drawings along the mesh's axes, each with every up direction. Empty if no
+/// drawing shows a face. The drawings include all of `positions`.
 std::optional<SeenFace> most_certain_face(const MeshPainter& painter, const Positions& positions,
                                           const LandmarkFinder& finder, int pixels,
                                           const Context& context) {
@@ -173,7 +176,7 @@ std::optional<SeenFace> most_certain_face(const MeshPainter& painter, const Posi
       seen[i] = seen_face(painter, views[i], finder, [](int) { return true; });
     };
     parallel_for(static_cast<int>(views.size()), look, of_drawings);
-    // The first drawings show the face as a rule: the others have no share of the progress.
+    // Usually the first drawings show the face, so the others have no share of the progress.
     of_drawings = context.part(1, 1);
     std::optional<SeenFace> best;
     for (const auto& face : seen) {
@@ -185,7 +188,7 @@ std::optional<SeenFace> most_certain_face(const MeshPainter& painter, const Posi
   return {};
 }
 
-/// From several sides, the front first, each under all lights; large enough for the finder.
+/// Views of a face from several sides, the front first, each under all lights.
 std::vector<MeshView> views_of(const FacePlace& face, int pixels) {
   std::vector<MeshView> views;
   for (const auto& [yaw, pitch] : kTurns) {
@@ -200,7 +203,6 @@ std::vector<MeshView> views_of(const FacePlace& face, int pixels) {
   return views;
 }
 
-/// Those that are looked for: the chin, brows, nose, eyes and the outside of the lips.
 constexpr bool is_sought(int number) {
   return number == 8 || (number >= 17 && number < 60);
 }
@@ -208,23 +210,23 @@ constexpr bool is_sought(int number) {
 /// Outer corners of the eyes.
 constexpr int kRightCorner = 36, kLeftCorner = 45;
 
-/// Share of the views that must show the face, and that must agree about a landmark. What is no
-/// face may look like one in a drawing, but not from all sides.
+/// Share of the views that must show the face, and that must agree about a landmark. Other shapes
+/// may look like a face in one drawing, but not from all sides.
 constexpr double kMajority = 0.5;
-/// Fewer are no face.
+/// Fewer landmarks do not make a face.
 constexpr std::size_t kFewestLandmarks = 12;
 
-/// A landmark's vertex is no farther from it than this share of the face's size.
+/// Largest distance of a landmark's vertex from it, as a share of the face's size.
 constexpr double kVertexReach = 0.15;
 
-/// Share of the search for the face along the mesh's axes in the progress.
+/// Share of the progress for the search along the mesh's axes.
 constexpr double kSearchShare = 0.6;
 
 bool is_of_eyes(int number) {
-  return number >= 36 && number < 48;  // which an eyeball may show instead of its lids
+  return number >= 36 && number < 48;  // an eyeball may show these instead of the lids
 }
 
-/// The part of the surface that shows most landmarks.
+/// Connected part that shows most landmarks.
 int skin_part(const SeenFace& seen, const Triangles& triangles, const SurfaceParts& parts) {
   std::map<int, int> landmarks;
   for (int i = 0; i < kFaceLandmarks; ++i) {
@@ -235,7 +237,7 @@ int skin_part(const SeenFace& seen, const Triangles& triangles, const SurfacePar
   return std::ranges::max_element(landmarks, fewer)->first;
 }
 
-/// Where most of some points are: the mean of those within reach of the median.
+/// Cluster that contains most of some points: the mean of the points within reach of the median.
 struct Agreement {
   Vector3d centre = Vector3d::Zero();
   double spread = 0;
@@ -263,7 +265,6 @@ Agreement agreement(const std::vector<Vector3d>& points, double reach) {
   return found;
 }
 
-/// One search of one head's face.
 class FaceSearch {
  public:
   FaceSearch(const Head& head, const LandmarkFinder& finder, const FaceSearchOptions& options,
@@ -278,7 +279,7 @@ class FaceSearch {
         painter_(head.mesh) {}
 
   FaceLandmarks landmarks() {
-    // A stray point has no say in how large the mesh is drawn.
+    // Stray vertices do not affect the size of the drawings.
     const Positions& all = head_.mesh.positions;
     const Positions drawn =
         all(used_vertices(head_.mesh.connectivity.triangles, all.rows()), Eigen::all);
@@ -324,7 +325,7 @@ class FaceSearch {
     return faces;
   }
 
-  /// From the front of the face instead of along an axis of the mesh.
+  /// Place of the face from drawings of its front instead of drawings along the mesh's axes.
   FacePlace nearer_place(const FacePlace& place) const {
     std::vector<MeshView> views = views_of(place, options_.pixels);
     views.resize(kLights.size());
@@ -350,7 +351,7 @@ class FaceSearch {
   void agree(const std::vector<SeenFace>& seen, FaceLandmarks& found) const {
     const std::vector<Vector3d> left = points_of(seen, kLeftCorner),
                                 right = points_of(seen, kRightCorner);
-    // Not on the skin, where eyes are set in as parts of their own: nothing tells the face's size.
+    // The size is unknown if the corners are not on the skin, as with eyes that are separate parts.
     if (left.empty() || right.empty()) return;
     const auto corner = [](const std::vector<Vector3d>& points) {
       return agreement(points, std::numeric_limits<double>::infinity()).centre;
@@ -367,7 +368,7 @@ class FaceSearch {
     }
   }
 
-  /// Corners of skin that is seen from outside.
+  /// Corners of skin triangles that are visible from outside.
   std::set<VertexIndex> seen_vertices(const std::vector<MeshView>& views) const {
     std::set<VertexIndex> vertices;
     for (std::size_t i = 0; i < views.size(); i += kLights.size()) {
@@ -380,9 +381,9 @@ class FaceSearch {
     return vertices;
   }
 
-  /// Gives landmarks their vertices. Of two at one vertex the nearer stays.
+  /// Assigns vertices to landmarks. Of two landmarks at one vertex, the nearer stays.
   void snap(const std::vector<MeshView>& views, FaceLandmarks& found) const {
-    std::map<VertexIndex, std::pair<double, int>> nearest;  // distance and number of its landmark
+    std::map<VertexIndex, std::pair<double, int>> nearest;  // distance and number of the landmark
     const std::set<VertexIndex> vertices = seen_vertices(views);
     for (FaceLandmark& landmark : found.found) {
       double distance = kVertexReach * found.size;

@@ -14,22 +14,23 @@
 
 namespace mimetra {
 
-/// iBUG's landmarks (0 to 67) and the vertex that each is.
+/// iBUG landmarks (0 to 67) and their vertices.
 using LandmarkVertices = std::vector<std::pair<int, VertexIndex>>;
 
-/// A mesh with a face on it.
+/// A mesh that shows a face.
 struct Head {
-  std::string name;  ///< for messages
+  std::string name;  ///< name in messages
   TriMesh mesh;
-  /// Landmarks that are known already; with any, none is looked for.
+  /// Landmarks that are already known. If there are any, no search takes place.
   LandmarkVertices known = {};
 };
 
 struct FaceSearchOptions {
-  /// Of the places where the views see a landmark around their centre, as a share of the distance
-  /// between the eyes' outer corners; landmarks that spread farther are left out.
+  /// Largest spread of a landmark's places among the views, as a share of the distance between the
+  /// eyes' outer corners. The spread is the root mean square distance from the centre. Landmarks
+  /// with a larger spread are left out.
   double max_spread = 0.06;
-  /// Width and height of the drawings of a face; a finder may need half of it to see one.
+  /// Width and height of the drawings of a face. A finder may need at least half of the default.
   int pixels = 384;
 
   static constexpr Option kMaxSpread{
@@ -42,43 +43,43 @@ struct FaceSearchOptions {
 /// A landmark on which the views agree.
 struct FaceLandmark {
   int number;             ///< 0 to 67
-  VertexIndex vertex;     ///< nearest to it of those seen
+  VertexIndex vertex;     ///< nearest among the visible vertices
   Eigen::Vector3d place;  ///< in the mesh's axes and unit
-  double spread;          ///< root mean square, in the mesh's unit
-  int views;              ///< that agree
+  double spread;          ///< root mean square distance of the views' places, in the mesh's unit
+  int views;              ///< number of views that agree
 };
 
-/// The landmarks of a head's face.
 struct FaceLandmarks {
-  std::vector<FaceLandmark> found;  ///< by number; no two at one vertex
-  /// Rows: the face's own left, which is right in a picture, its up, and where it looks.
+  std::vector<FaceLandmark> found;  ///< ascending by number; no two at one vertex
+  /// Rows: the face's own left (right in a picture), its up, and its viewing direction.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
-  /// Between the outer corners of the eyes, in the mesh's unit.
+  /// Distance between the outer corners of the eyes, in the mesh's unit.
   double size = 0;
-  int views = 0;            ///< drawn; 0 where the landmarks were known
-  int views_with_face = 0;  ///< those in which the finder found it
-  double confidence = 0;    ///< mean of these
+  int views = 0;            ///< number of drawings; 0 if the landmarks were known
+  int views_with_face = 0;  ///< number of drawings in which the finder found the face
+  double confidence = 0;    ///< mean over these drawings
 
-  /// Mean over the landmarks, as a share of `size`.
+  /// Mean spread of the landmarks, as a share of `size`.
   double mean_spread() const;
 };
 
-/// Finds the landmarks of a head: in drawings along all axes of the mesh the most certain face,
-/// then in drawings of that face from several sides under several lights the landmarks, which are
-/// carried back onto the surface. A landmark is where most views agree; it is a vertex of the
-/// connected part that shows most landmarks, the skin, and is seen from outside.
+/// Finds the landmarks of a head. First, it selects the most certain face in drawings along all
+/// axes of the mesh. It then draws that face from several sides under several lights, and projects
+/// the landmarks back onto the surface.
 ///
-/// Not looked for: the inside of the lips (60 to 67), which one lip shares with the other where a
-/// mouth is closed; the jaw but for the chin (8), as it lies on the outline, which is another part
-/// of the surface in each view.
+/// Each landmark is where most views see it. Its vertex is visible from outside and belongs to the
+/// skin, the connected part that shows most landmarks. Landmarks 60 to 67 (inside of the lips) are
+/// not searched, because the lips share them if a mouth is closed. Of the jaw only the chin (8) is
+/// searched, because the outline differs from view to view.
 ///
-/// Known landmarks are taken as they are. Throws MismatchError that names the mesh if no face is
-/// found, or if the mesh has no vertex of a known landmark; std::invalid_argument for options out
-/// of range; Cancelled; what the finder throws.
+/// Known landmarks are returned unchanged. Throws MismatchError if no face is found, the finder is
+/// empty, or the mesh lacks the vertex of a known landmark. The message names the mesh. Throws
+/// std::invalid_argument if an option is out of range. Throws what the finder throws, and
+/// Cancelled.
 FaceLandmarks find_landmarks(const Head& head, const LandmarkFinder& finder,
                              const FaceSearchOptions& options = {}, const Context& context = {});
 
-/// A landmark carried back from a drawing onto the surface.
+/// A landmark projected from a drawing back onto the surface.
 struct SeenPoint {
   int triangle;
   Eigen::Vector3d position;
@@ -86,27 +87,26 @@ struct SeenPoint {
 
 /// Landmarks of a face in a drawing.
 struct SeenFace {
-  /// None where no wanted triangle is near.
+  /// Landmarks without a wanted triangle nearby are empty.
   std::array<std::optional<SeenPoint>, kFaceLandmarks> points;
   double confidence = 0;
 };
 
-/// Draws, finds, and carries each landmark back to the nearest pixel that shows a wanted triangle's
-/// outside; none where there is no face.
+/// Draws a view and finds its face. Each landmark is projected to the nearest pixel that shows the
+/// outside of a wanted triangle. Empty if the drawing shows no face.
 std::optional<SeenFace> seen_face(const MeshPainter& painter, const MeshView& view,
                                   const LandmarkFinder& finder,
                                   const std::function<bool(int)>& wanted);
 
-/// A face as it is on a mesh.
 struct FacePlace {
-  /// Rows: right in a picture, up, where it looks.
+  /// Rows: right in a picture, up, and the viewing direction.
   Eigen::Matrix3d axes;
-  /// Middle of brows, nose, eyes and lips, and their root mean square distance from it.
+  /// Mean of brows, nose, eyes and lips, and their root mean square distance from it.
   Eigen::Vector3d middle;
   double radius;
 };
 
-/// None where a landmark is not seen, or the nose does not stand out.
+/// Empty if one of the landmarks 17 to 59 is missing, or the nose does not protrude.
 std::optional<FacePlace> face_place(const SeenFace& seen);
 
 }  // namespace mimetra

@@ -13,20 +13,19 @@
 namespace mimetra {
 namespace {
 
-/// Edges are looked for within this share of the opening's width from their landmarks: lips are
-/// thick, and a socket's ground is farther away.
+/// Reach of an edge from its landmarks, as a share of the opening's width. Lips are thick, and the
+/// bottom of an eye socket is farther away.
 constexpr double kEdgeReach = 0.4;
-/// Where edges meet behind, as in a mouth's bag, they end at this share of the way from one to the
-/// other.
+/// If edges meet behind the opening, as in the bag of a mouth, each ends at this share of the path
+/// to the other.
 constexpr double kShareOfWay = 0.4;
-/// A way from edge to edge that is shorter than this many times the straight line leads over skin
-/// without a cut.
+/// A path between the edges that is shorter than this multiple of the straight line crosses uncut
+/// skin.
 constexpr double kDetour = 1.6;
-/// Half of the band around the opening's middle, as a share of the width: at the corners edges
-/// meet.
+/// Half width of the band around the opening's middle, as a share of the width. The edges meet at
+/// the corners.
 constexpr double kBand = 0.25;
 
-/// Landmarks of one opening.
 struct Scheme {
   std::string_view name;
   std::array<int, 2> corners;
@@ -40,7 +39,7 @@ const std::array<Scheme, 3>& schemes() {
   return all;
 }
 
-/// The welded surface that openings are looked for on.
+/// Welded surface of the face.
 struct Skin {
   explicit Skin(const TriMesh& rest)
       : positions(rest.positions),
@@ -56,10 +55,10 @@ struct Skin {
   Surface surface;
 };
 
-/// What is reached along edges from two groups of vertices.
+/// Vertices within reach of two groups of vertices, along edges.
 struct Reached {
   std::map<VertexIndex, double> distance;  ///< from the nearer group
-  std::map<VertexIndex, int> group;        ///< that one, 0 or 1
+  std::map<VertexIndex, int> group;        ///< number of the nearer group, 0 or 1
 };
 
 Reached reached_from(const Skin& skin, const std::array<std::vector<VertexIndex>, 2>& groups,
@@ -77,7 +76,6 @@ Reached reached_from(const Skin& skin, const std::array<std::vector<VertexIndex>
   return result;
 }
 
-/// An opening's landmarks on the skin.
 struct Edges {
   Edges(const Skin& skin, const Scheme& scheme, const std::map<int, VertexIndex>& vertex_of)
       : from(skin.positions.row(vertex_of.at(scheme.corners[0]))),
@@ -100,10 +98,11 @@ struct Edges {
   Eigen::RowVector3d from, to;
   double width;
   std::array<std::vector<VertexIndex>, 2> landmarks;  ///< upper and lower
-  double apart = 0;                                   ///< the landmarks of a pair, mean
+  double apart = 0;  ///< mean distance between the landmarks of a pair
 };
 
-/// The shortest way in the band from one edge's landmarks to the other's; infinite without one.
+/// Shortest path from one edge's landmarks to the other's that crosses in the band; infinite if
+/// there is none.
 double way_between(const Skin& skin, const Edges& edges, const Reached& reached) {
   double shortest = std::numeric_limits<double>::infinity();
   for (const auto& [vertex, group] : reached.group) {
@@ -118,7 +117,7 @@ double way_between(const Skin& skin, const Edges& edges, const Reached& reached)
   return shortest;
 }
 
-/// Its edges are empty where they hang together.
+/// Opening of a scheme; its edges are empty if uncut skin connects them.
 FaceOpening opening_between(const Skin& skin, const Scheme& scheme,
                             const std::map<int, VertexIndex>& vertex_of) {
   const Edges edges(skin, scheme, vertex_of);

@@ -12,21 +12,22 @@ namespace mimetra {
 /// An eye or a mouth: an upper and a lower edge of the skin, which may touch.
 struct FaceOpening {
   std::string_view name;  ///< "right eye", "left eye" or "mouth"
-  /// The skin of either edge, around its middle.
+  /// Vertices of the skin along each edge, around its middle.
   std::vector<VertexIndex> upper, lower;
-  double width = 0;  ///< between the opening's corners at rest, in the unit of the positions
+  double width =
+      0;  ///< distance between the opening's corners at rest, in the unit of the positions
 };
 
-/// The openings of a face whose iBUG landmarks (0 to 67) and their vertices are known. An edge is
-/// what is nearer to its landmarks than to the other edge's, along the surface, in the middle half
-/// of the opening. Left out is one whose landmarks are not all there, and one whose edges hang
-/// together: skin without a cut.
+/// Finds the openings of a face from its iBUG landmarks (0 to 67) and their vertices. An edge
+/// consists of vertices that are nearer to its landmarks than to the other edge's, along the
+/// surface. Only the middle half of the opening counts. An opening is left out if landmarks are
+/// missing, or if its edges are connected by uncut skin.
 ///
-/// Throws std::invalid_argument for a landmark that is no vertex of the mesh.
+/// Throws std::invalid_argument if a landmark's vertex does not exist.
 std::vector<FaceOpening> face_openings(const TriMesh& rest, const LandmarkVertices& landmarks);
 
-/// The shortest distance between the edges' vertices, in shares of the opening's width (F x
-/// openings). Throws what reading throws, Cancelled.
+/// Shortest distance between the edges' vertices, as a share of the opening's width (F x openings).
+/// Throws what reading throws, and Cancelled.
 Eigen::MatrixXd openness(const FrameSource& sequence, const std::vector<FaceOpening>& openings,
                          const Context& context = {});
 

@@ -10,7 +10,7 @@
 
 namespace mimetra {
 
-/// A grey picture: its pixels row after row, from the top left.
+/// A grey picture with its pixels row by row, from the top left.
 struct GreyImage {
   int width = 0;
   int height = 0;
@@ -23,20 +23,19 @@ struct GreyImage {
   bool contains(int x, int y) const { return x >= 0 && x < width && y >= 0 && y < height; }
 };
 
-/// Landmarks of iBUG's scheme: 0 to 16 along the jaw, 17 to 26 brows, 27 to 35 nose, 36 to 47 eyes,
-/// 48 to 67 lips.
+/// Number of landmarks in iBUG's scheme. The jaw has 0 to 16, the brows 17 to 26, the nose 27 to
+/// 35. The eyes have 36 to 47, the lips 48 to 67.
 constexpr int kFaceLandmarks = 68;
 
-/// A face in a picture.
 struct FoundFace {
-  /// Columns and rows in pixels; 0, 0 is the middle of the pixel at the top left.
+  /// Columns and rows in pixels. (0, 0) is the middle of the top left pixel.
   Eigen::Matrix<double, kFaceLandmarks, 2> landmarks;
-  /// In [0, 1); the larger, the more certainly it is a face.
+  /// Certainty that this is a face, in [0, 1).
   double confidence = 0;
 };
 
-/// Finds the most certain face of a picture that is upright, looks at the viewer and is 80 pixels
-/// wide at least; none where there is none. Called from several threads.
+/// Finds the most certain face of a picture, or nothing. The face must be upright, look at the
+/// viewer and be at least 80 pixels wide. Several threads call it.
 using LandmarkFinder = std::function<std::optional<FoundFace>(const GreyImage&)>;
 
 }  // namespace mimetra

@@ -21,36 +21,37 @@
 namespace mimetra {
 namespace {
 
-/// Points are in one plane where their smallest extent is this share of their largest.
+/// Points are coplanar if their smallest extent is this share of their largest.
 constexpr double kFlat = 1e-3;
 
-/// Fewer leave too little to predict from; the inverse of more takes seconds.
+/// Fewer markers predict too little. With more, the matrix inverse takes seconds.
 constexpr std::size_t kFewestChecked = 8, kMostChecked = 1000;
 
-/// Markers that an affine map does not fit whatever they are: it has four for itself.
+/// An affine map fits any four markers exactly, and needs more for a meaningful residual.
 constexpr std::size_t kFewestForAffine = 6;
 
-/// Sound markers of other faces leave a third or less of what they leave one vertex further.
+/// Largest share of the residual that correct vertex numbers leave. Sound markers of other faces
+/// leave at most a third of the residual with numbers off by one.
 constexpr double kFitsBetter = 0.5;
 
-/// Exchanging two leaves this share of the squared distances from their predictions at most. Of
-/// sound pairs, whole sets of faces and parts of them, the least is 0.42.
+/// Largest share of the squared errors that remains after an exchange. The least for sound pairs,
+/// on whole sets of faces and parts of them, is 0.42.
 constexpr double kExchangedShare = 0.2;
 
-/// A place is doubtful from so many times the median on. Of sound markers the most is 6.
+/// An error of this multiple of the median is doubtful. The largest of sound markers is 6.
 constexpr double kDoubtfulTimes = 12;
 
-/// What is nearer, in shares of the markers' size, does no harm: lips that touch.
+/// Smaller errors, as a share of the markers' size, are harmless, such as at lips that touch.
 constexpr double kHarmless = 0.02;
 
-/// Others in one plane predict nothing of what lies beside it; this is rounding.
+/// Coplanar markers predict nothing outside their plane; smaller numbers are rounding.
 constexpr double kUnpredicted = 1e-9;
 
-/// A mirror image fits better where it leaves less than this share of what the source does: 0.29 at
-/// most of the mirrored faces of other people, 3 at least of upright ones.
+/// A mirror image fits better if it leaves less than this share of the source's residual. The
+/// largest on mirrored faces of other people is 0.29, the least on upright ones 3.
 constexpr double kMirroredFit = 0.5;
 
-/// Mean cosine between normals at markers, which is 0.8 and more on pairs of faces.
+/// Mean cosine between normals at markers. On pairs of faces it is at least 0.8.
 constexpr double kFacingAlike = 0.4;
 
 Positions positions_at(const std::vector<Marker>& markers, VertexIndex Marker::*vertex,
@@ -95,9 +96,9 @@ double size_of(const Positions& places) {
   return std::sqrt((places.rowwise() - places.colwise().mean()).rowwise().squaredNorm().mean());
 }
 
-/// Predicts values at points from those at the other points, without a solve for each: with K the
-/// matrix of the spline's equations, what is missed at i is (K^-1 b)_i / (K^-1)_ii, and at i and j
-/// the same with the 2 x 2 block of both [Rippa 1999].
+/// Predicts the value at each point from the other points, without a solve for each. With the
+/// matrix K of the spline's equations, the error at i is (K^-1 b)_i / (K^-1)_ii. The errors at i
+/// and j together follow from the 2 x 2 block of both [Rippa 1999].
 class LeaveOut {
  public:
   explicit LeaveOut(const Positions& points) {
@@ -116,17 +117,17 @@ class LeaveOut {
 
   Positions coefficients(const Positions& values) const { return inverse_ * values; }
 
-  /// Value less prediction at i.
+  /// Error at i: value minus prediction. Zero if the others do not predict it.
   Eigen::RowVector3d missed(const Positions& coefficients, Eigen::Index i) const {
     if (inverse_(i, i) <= least_) return Eigen::RowVector3d::Zero();
     return coefficients.row(i) / inverse_(i, i);
   }
-  /// Its length by what is to be expected so far from the others.
+  /// Length of the error at i, relative to the error expected at its distance from the others.
   double significance(const Positions& coefficients, Eigen::Index i) const {
     if (inverse_(i, i) <= least_) return 0;
     return coefficients.row(i).norm() / std::sqrt(inverse_(i, i));
   }
-  /// The same at i and j, from the others; zero where these do not predict.
+  /// Errors at i and j, predicted from the other points. Zero if these do not predict them.
   Eigen::Matrix<double, 2, 3> missed(const Positions& coefficients, Eigen::Index i,
                                      Eigen::Index j) const {
     Eigen::Matrix2d block;
@@ -142,7 +143,7 @@ class LeaveOut {
   double least_;
 };
 
-/// The two whose exchange mends most, if any.
+/// Pair whose exchange improves the predictions most, if any.
 std::optional<std::pair<int, int>> best_exchange(const LeaveOut& others, const Positions& places,
                                                  double size) {
   const Positions coefficients = others.coefficients(places);
@@ -164,7 +165,7 @@ std::optional<std::pair<int, int>> best_exchange(const LeaveOut& others, const P
   return best;
 }
 
-/// The most doubtful of some markers, by its place among them; none where all are sound.
+/// Most doubtful of some markers, by its index among them. Empty if all are sound.
 std::optional<DoubtfulMarker> most_doubtful(const Positions& from, const Positions& to,
                                             double size) {
   const LeaveOut others(from);
@@ -201,7 +202,7 @@ std::string name_of(std::size_t marker, const std::vector<Marker>& markers,
          std::to_string(markers[marker].target) + ")";
 }
 
-/// Mean cosine of the target's normals at markers and the source's as a map carries its faces.
+/// Mean cosine between the target's normals at markers and the mapped source's normals.
 double mean_facing(const TriMesh& source, const TriMesh& target, const std::vector<Marker>& markers,
                    const Similarity& map) {
   const Positions from = vertex_normals(source.positions, source.connectivity.triangles),
@@ -211,7 +212,7 @@ double mean_facing(const TriMesh& source, const TriMesh& target, const std::vect
     const Eigen::Vector3d carried = map.rotation * from.row(marker.source).transpose();
     sum += carried.stableNormalized().dot(to.row(marker.target).stableNormalized());
   }
-  // Faces keep the order of their corners in the mirror, and so turn over.
+  // Faces keep the order of their corners in the mirror, and therefore flip.
   return (map.mirrors() ? -sum : sum) / static_cast<double>(markers.size());
 }
 
@@ -311,7 +312,8 @@ bool fit_better_shifted(const std::vector<Marker>& markers, int shift, const Pos
   const auto is_better = [&](const auto& residual) {
     return residual(shifted, source, target) < kFitsBetter * residual(markers, source, target);
   };
-  // Two that are exchanged leave much of either, and what is left of few says little.
+  // An exchanged pair leaves a large residual in either case. The residual of few markers says
+  // little.
   if (!is_better(affine_residual)) return false;
   return markers.size() < kFewestChecked || markers.size() > kMostChecked ||
          is_better(left_out_residual);

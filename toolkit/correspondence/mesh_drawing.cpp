@@ -20,13 +20,13 @@ using Eigen::Vector3d;
 
 constexpr int kMostPixels = 4096;
 
-/// Steps of the grid of places from one sample to the next. On a grid, which side of an edge a
-/// sample is on is exact: neighbours leave no gap and share no sample.
+/// Grid steps between samples. On a grid, the side of an edge is exact: neighbours leave no gap and
+/// share no sample.
 constexpr int kSteps = 64;
-/// Beyond, squares of places do not fit into 64 bits.
+/// Limit of coordinates, so that products fit into 64 bits.
 constexpr double kFarthest = 1 << 29;
 
-/// Brightness: of the background, of the mesh's inside, and of its outside in shadow and in light.
+/// Brightness of the background, of the mesh's inside, and of its outside in shadow and in light.
 constexpr double kBackground = 96, kInside = 24, kShadow = 40, kLit = 225;
 
 using Place = Eigen::Matrix<std::int64_t, 2, 1>;
@@ -36,17 +36,18 @@ std::int64_t area(const Place& a, const Place& b, const Place& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-/// Of a sample on an edge, one of the two triangles has it.
+/// Assigns a sample on an edge to one of the two triangles.
 bool owns_edge(const Place& from, const Place& to) {
   return to.y() != from.y() ? to.y() > from.y() : to.x() < from.x();
 }
 
-/// A triangle in the drawing: its corners counterclockwise as areas count them.
+/// A triangle in the drawing, with its corners in the order of positive area.
 struct Drawn {
   std::array<Place, 3> corners;
   std::int64_t twice_area;
 
-  /// Of a sample's areas against the edges; empty outside.
+  /// Returns true if the triangle contains the sample, with its barycentric coordinates in
+  /// `shares`.
   bool holds(const Place& sample, Vector3d& shares) const {
     for (int c = 0; c < 3; ++c) {
       const Place &from = corners[(c + 1) % 3], &to = corners[(c + 2) % 3];
@@ -58,10 +59,10 @@ struct Drawn {
   }
 };
 
-/// The samples of a drawing, and what is nearest at each.
+/// Nearest triangle at each sample of a drawing.
 class Samples {
  public:
-  /// `side` samples in each row and column.
+  /// `side` is the number of samples in each row and column.
   Samples(const Positions& places, const Triangles& triangles, int side)
       : places_(places),
         triangles_(triangles),
@@ -90,7 +91,7 @@ class Samples {
     return static_cast<std::size_t>(row) * side_ + column;
   }
 
-  /// Whether the second and third corner change places for it.
+  /// Sets the corners. Returns true if the second and third were exchanged.
   bool corners_of(int t, Drawn& drawn) const {
     for (int c = 0; c < 3; ++c) {
       const auto row = places_.row(triangles_(t, c));
@@ -140,7 +141,8 @@ class Samples {
     nearest_[sample] = t;
   }
 
-  /// Of triangles at one place: by their vertices, whatever the triangles' order.
+  /// Order of triangles at equal depth: by vertices, so that the order of triangles does not
+  /// matter.
   bool comes_first(int a, int b) const {
     const auto corners = [this](int t) {
       return std::tuple(triangles_(t, 0), triangles_(t, 1), triangles_(t, 2), t);
@@ -165,7 +167,8 @@ MeshPainter::MeshPainter(const TriMesh& mesh)
   const Positions directions = triangle_normals(positions_, triangles_);
   const Eigen::VectorXd areas = directions.rowwise().norm();
   if (areas.sum() <= 0) return;
-  // A closed surface holds a volume, and a cap's middle lies behind most of it.
+  // The normals point outwards if the surface encloses a positive volume. Most of an open cap is in
+  // front of its centroid.
   const Eigen::RowVector3d middle = areas.transpose() * middles / areas.sum();
   inside_out_ = (middles.rowwise() - middle).cwiseProduct(directions).sum() < 0;
   if (inside_out_) normals_ = -normals_;
@@ -185,7 +188,7 @@ MeshDrawing MeshPainter::draw(const MeshView& view) const {
   const int side = view.pixels * view.samples;
   const double scale = side * kSteps / view.side;
   const double middle = (side - 1) * kSteps / 2.0;
-  // Columns, rows downwards, and towards the viewer, all in steps.
+  // Column, row (downwards) and depth towards the viewer, all in grid steps.
   Positions places =
       (positions_.rowwise() - view.centre.transpose()) * view.axes.transpose() * scale;
   places.col(0).array() += middle;

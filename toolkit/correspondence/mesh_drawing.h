@@ -7,51 +7,53 @@
 
 namespace mimetra {
 
-/// From where and in which light a mesh is looked at, without perspective.
+/// Direction and light of an orthographic view of a mesh.
 struct MeshView {
-  /// Rows: the drawing's right, its up, and towards the viewer; a rotation, in the mesh's axes.
+  /// Rotation in the mesh's axes. Rows: right and up in the drawing, and the direction towards the
+  /// viewer.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
-  /// The point in the drawing's middle.
+  /// Point in the drawing's middle.
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  /// Of the square that is drawn, in the mesh's unit.
+  /// Side of the drawn square, in the mesh's unit.
   double side = 1;
-  /// The same in pixels.
+  /// Side of the drawn square, in pixels.
   int pixels = 1;
-  /// Of a pixel, along a row and along a column; odd, so that one is in its middle.
+  /// Samples per row and per column of a pixel. The number is odd, so that one sample is in the
+  /// middle.
   int samples = 3;
-  /// Towards the light, in the drawing's right, up and towards the viewer.
+  /// Direction towards the light, in the drawing's right, up and towards the viewer.
   Eigen::Vector3d light = Eigen::Vector3d::UnitZ();
 };
 
-/// What is seen at the middle of a pixel.
+/// Point of the mesh at the middle of a pixel.
 struct SeenPlace {
-  int triangle = -1;  ///< -1 for nothing
-  /// Of the triangle's corners; they add up to 1.
+  int triangle = -1;  ///< -1 if the pixel shows the background
+  /// Barycentric coordinates in the triangle.
   Eigen::Vector3d shares = Eigen::Vector3d::Zero();
 };
 
 struct MeshDrawing {
   GreyImage image;
-  std::vector<SeenPlace> places;  ///< of each pixel, as in the image
+  std::vector<SeenPlace> places;  ///< of each pixel, in the order of the image
 };
 
-/// Draws a mesh by depth: smooth normals, one light, edges softened; what is inside of it is dark.
-/// Queries are const and may run from several threads.
+/// Draws a mesh with a depth buffer, smooth normals, one light and softened edges. The inside of
+/// the mesh is dark. Queries are const and may run from several threads.
 ///
-/// Which side is outside comes from where most normals lead, so that a mesh whose triangles all
-/// face inwards looks the same. The order of triangles changes no pixel of the image.
+/// Most normals define the outside, so that a mesh whose triangles all face inwards looks the same.
+/// The order of triangles does not change the image.
 class MeshPainter {
  public:
-  /// Vertices at one place are one. Throws std::invalid_argument for a vertex that is not finite.
+  /// Coinciding vertices are welded. Throws std::invalid_argument if a vertex is not finite.
   explicit MeshPainter(const TriMesh& mesh);
 
-  /// Throws std::invalid_argument for a view without size, more than 4096 pixels, or an even number
+  /// Throws std::invalid_argument if the view has no size, not 1 to 4096 pixels, or an even number
   /// of samples.
   MeshDrawing draw(const MeshView& view) const;
 
-  /// The point of the mesh at a place that is seen.
+  /// Point of the mesh at a place with a triangle.
   Eigen::Vector3d position(const SeenPlace& place) const;
-  /// Whether it is a triangle's outside that is seen.
+  /// Returns true if the view shows the triangle's outside.
   bool shows_outside(int triangle, const MeshView& view) const;
 
  private:

@@ -14,7 +14,7 @@
 namespace mimetra {
 namespace {
 
-/// Half of the weight, but for rounding.
+/// Half of the weight, with a tolerance for rounding.
 constexpr double kHalf = 0.5 - 1e-9;
 
 void check_pairs(const TriMesh& source, const TriMesh& target, const Correspondence& pairs) {
@@ -27,7 +27,8 @@ void check_pairs(const TriMesh& source, const TriMesh& target, const Corresponde
                       std::to_string(to));
 }
 
-/// The source's rest pose as it lies over the target's; as it is where the pairs do not tell.
+/// Source's rest pose, placed over the target by the pairs. Unchanged if the pairs do not determine
+/// a similarity.
 Positions placed_over(const TriMesh& source, const TriMesh& target, const Correspondence& pairs) {
   const Positions middles = centroids(source.positions, source.connectivity.triangles);
   const Positions places = centroids(target.positions, target.connectivity.triangles);
@@ -41,11 +42,12 @@ Positions placed_over(const TriMesh& source, const TriMesh& target, const Corres
   try {
     return similarity_fit(from, to).apply(source.positions);
   } catch (const MismatchError&) {
-    return source.positions;  // a few triangles on a line: corners are taken as they are numbered
+    return source.positions;  // a few collinear triangles: corners keep their order
   }
 }
 
-/// Whether the paired triangles of most of the target's surface face away from their partners.
+/// Returns true if the paired triangles of most of the target's surface face away from their
+/// partners.
 bool leads_other_way(const Positions& placed, const Triangles& triangles, const TriMesh& target,
                      const Correspondence& pairs) {
   const Positions from = triangle_normals(placed, triangles),
@@ -60,13 +62,13 @@ bool leads_other_way(const Positions& placed, const Triangles& triangles, const 
   return facing < 0;
 }
 
-/// Triangles whose corners come the other way round.
+/// Triangles with the opposite order of corners.
 Triangles backwards(Triangles triangles) {
   triangles.col(1).swap(triangles.col(2));
   return triangles;
 }
 
-/// From the centroid to each corner, one a column.
+/// Vectors from the centroid to each corner, one a column.
 Eigen::Matrix3d corner_directions(const Positions& positions, const Triangles& triangles,
                                   int triangle) {
   Eigen::Matrix3d corners;
@@ -78,8 +80,8 @@ Eigen::Matrix3d corner_directions(const Positions& positions, const Triangles& t
   return corners;
 }
 
-/// By how many corners the source's triangle is written later than the target's; 0 unless another
-/// number is clearly better.
+/// Rotation of the source triangle's corners against the target's: 0, 1 or 2. It is 0 unless
+/// another number fits clearly better.
 int turn_of(const Eigen::Matrix3d& source, const Eigen::Matrix3d& target) {
   constexpr double kClearly = 1e-6;
   int best = 0;

@@ -8,30 +8,29 @@
 
 namespace mimetra {
 
-/// True where at least half of the weight of a target triangle's partners is of triangles of the
-/// source for which `is_selected` says so.
+/// Returns true if at least half of the weight of a target triangle's partners belongs to source
+/// triangles with `is_selected`.
 bool is_over(const Correspondence& pairs, int target_triangle,
              const std::function<bool(int)>& is_selected);
 
-/// Target triangles of which at least half of their partners' weight is in `selected` (triangles of
-/// the source), ascending.
+/// Target triangles with at least half of their partners' weight in `selected` (triangles of the
+/// source), ascending.
 std::vector<int> triangles_over(const Correspondence& pairs, const std::vector<int>& selected);
 
-/// A source and a target of other faces, and what of the source shows what happens to each triangle
-/// and each vertex of the target.
+/// Correspondence between a source and a target of other faces, for triangles and for vertices.
 class Pairing {
  public:
-  /// A vertex of the source and its share; those of one target vertex add up to 1.
+  /// A vertex of the source and its share. The shares of one target vertex add up to 1.
   struct Carrier {
     VertexIndex vertex;
     double weight;
   };
 
-  /// The carriers of a target vertex are the corners of its triangles' partners that lie as it does
-  /// in its triangles, as the rest poses show them after the similarity of the paired triangles (in
-  /// the other direction around where the target is inside out); it
-  /// has none where no triangle around it has a partner. Throws MismatchError where the
-  /// correspondence is of other numbers of triangles.
+  /// Finds the carriers of each target vertex: the matching corners of the partners of its
+  /// triangles. Corners match by their places after the similarity of the paired triangles. If the
+  /// target is inside out, corners are matched in the opposite order. A vertex without a paired
+  /// triangle has no carriers. Throws MismatchError if the correspondence has other numbers of
+  /// triangles.
   Pairing(const TriMesh& source, const TriMesh& target, Correspondence pairs);
 
   const Correspondence& triangles() const { return pairs_; }
@@ -40,21 +39,21 @@ class Pairing {
   int target_vertices() const { return static_cast<int>(offsets_.size()) - 1; }
 
   std::span<const Carrier> carriers(VertexIndex target_vertex) const;
-  /// No vertex has more than one carrier, and no triangle more than one partner: only numbers
-  /// differ.
+  /// Returns true if no vertex has more than one carrier and no triangle more than one partner. The
+  /// meshes then differ only in their numbers.
   bool is_one_to_one() const;
-  /// `selected` triangles of the target with those of gaps between them: connected triangles
-  /// without partner, of whose neighbours with one at least half are selected. `triangles` (M x 3)
-  /// are the target's.
+  /// `selected` triangles of the target plus the gaps between them, ascending. A gap is a connected
+  /// set of triangles without a partner. It is added if at least half of its neighbours with a
+  /// partner are selected. `triangles` (M x 3) belong to the target.
   std::vector<int> with_gaps(std::vector<int> selected, const Triangles& triangles) const;
   /// Target vertices with carriers, ascending.
   std::vector<VertexIndex> carried_vertices() const;
-  /// Where the carriers of some target vertices are in a pose of the source (n x 3). \pre they have
-  /// some
+  /// Weighted mean place of the carriers of each vertex in a pose of the source (n x 3). \pre each
+  /// has carriers
   Positions carried(const Eigen::Ref<const Positions>& pose,
                     const std::vector<VertexIndex>& vertices) const;
-  /// Target vertices at least half of whose carriers are in a set (N each); without carriers they
-  /// are not.
+  /// Mask of the target vertices with at least half of their carriers' weight in `source_vertices`.
+  /// Vertices without carriers are not in it.
   std::vector<bool> over(const std::vector<bool>& source_vertices) const;
 
  private:
@@ -65,11 +64,11 @@ class Pairing {
   std::vector<Carrier> carriers_;
 };
 
-/// Those of some triangles of a target that have a partner; all without a pairing (null).
+/// Triangles of the target that have a partner; all without a pairing (null).
 std::vector<int> with_partners(std::vector<int> triangles, const Pairing* pairing);
 
-/// Throws MismatchError where rest poses have not the vertices of the pairing, or without one
-/// (null) different numbers of them.
+/// Throws MismatchError if the rest poses do not have the pairing's numbers of vertices. Without a
+/// pairing (null), throws if their numbers differ.
 void check_sizes(const Positions& source_rest, const Positions& target_rest,
                  const Pairing* pairing);
 

@@ -21,13 +21,13 @@ int corners_of(const Polygons& polygons, int face) {
   return polygons.offsets[face + 1] - polygons.offsets[face];
 }
 
-/// `fine` with successive faces joined across the edges they share, so that there are as many
-/// corners in each face as in that face of `coarse`; none where they cannot be.
+/// `fine` with successive faces joined across shared edges, so that each face has as many corners
+/// as in `coarse`. Empty if that is impossible.
 std::optional<Polygons> joined_like(const Polygons& coarse, const Polygons& fine) {
   Polygons joined;
   int at = 0;
   for (int face = 0; face < coarse.size(); ++face) {
-    // A polygon of c corners is worth c - 2 triangles.
+    // A polygon of c corners equals c - 2 triangles.
     int wanted = corners_of(coarse, face) - 2;
     const int first = at;
     for (; wanted > 0 && at < fine.size(); ++at) wanted -= corners_of(fine, at) - 2;
@@ -43,7 +43,7 @@ std::optional<Polygons> joined_like(const Polygons& coarse, const Polygons& fine
   return joined;
 }
 
-/// What a fit leaves of the squared distances is rounding below this share.
+/// Below this share of the squared distances, a fit's residual is rounding.
 constexpr double kFitRounding = 1e-9;
 
 std::string counted(const MapSide& side) {
@@ -68,8 +68,8 @@ Renumbering by_graph(const MapSide& from, const MapSide& to) {
   return found.why_not.empty() ? with_map(std::move(found.vertices)) : without_map(found.why_not);
 }
 
-/// Whether a mirror image of `from` comes clearly nearer to the images of its vertices than it does
-/// itself, each carried by the similarity that fits best. [Umeyama 1991]
+/// Returns true if a mirror image of `from` fits the images of its vertices clearly better than
+/// `from` itself. Both are placed by their best similarity. [Umeyama 1991]
 bool is_mirrored(const std::vector<VertexIndex>& image, const MapSide& from, const MapSide& to) {
   const auto centred = [](const Positions& positions) -> Eigen::MatrixXd {
     return positions.rowwise() - positions.colwise().mean();
@@ -85,7 +85,7 @@ bool is_mirrored(const std::vector<VertexIndex>& image, const MapSide& from, con
   return left > kFitRounding * whole && kClearlyFarther * kClearlyFarther * left_mirrored < left;
 }
 
-/// Each face from its last corner to its first.
+/// Faces with the opposite orientation.
 Polygons turned_round(Polygons polygons) {
   for (int f = 0; f < polygons.size(); ++f) {
     std::reverse(polygons.corners.begin() + polygons.offsets[f],
@@ -94,8 +94,8 @@ Polygons turned_round(Polygons polygons) {
   return polygons;
 }
 
-/// The map by the graph, unless faces lead the other way round: a face that is symmetric then has
-/// one that exchanges left and right.
+/// Map by the graph, unless the faces' orientation is opposite. A symmetric face then has a map
+/// that exchanges left and right.
 Renumbering by_graph_and_sides(const MapSide& from, const MapSide& to) {
   Renumbering found = by_graph(from, to);
   if (found.found() && !(from.positions && is_mirrored(found.vertices, from, to))) return found;
@@ -104,7 +104,7 @@ Renumbering by_graph_and_sides(const MapSide& from, const MapSide& to) {
   return without_map("the same faces, but they lead the other way round (inside out): turn them");
 }
 
-/// Connected part of each vertex: its lowest vertex (N).
+/// Lowest vertex of each vertex's connected part (N).
 std::vector<VertexIndex> parts_of(const MapSide& side) {
   DisjointSets sets(side.vertices);
   for (int f = 0; f < side.polygons->size(); ++f) {
@@ -119,8 +119,9 @@ std::vector<VertexIndex> parts_of(const MapSide& side) {
   return parts;
 }
 
-/// Whether the image of some part lies farther from it than the part is large: from centre to
-/// centre, against the root mean square distance from the centre, after the similarity of all.
+/// Returns true if the image of some part is farther away than the part is large. The distance is
+/// between centres after the similarity of all vertices. The size is the root mean square distance
+/// from the centre.
 bool has_part_elsewhere(const std::vector<VertexIndex>& image, const MapSide& from,
                         const MapSide& to) {
   const Positions carried = told_by(image, from, to).apply(*from.positions);
@@ -143,8 +144,8 @@ bool has_part_elsewhere(const std::vector<VertexIndex>& image, const MapSide& fr
   return false;
 }
 
-/// What the order of faces says, unless it exchanges parts that positions tell apart: two eyes of
-/// one shape in another order, or triangles that share no vertex.
+/// Map by the order of faces, unless it exchanges parts that positions distinguish. Examples are
+/// two eyes of one shape, or triangles that share no vertex, in another order.
 Renumbering in_order_or_by_places(std::vector<VertexIndex> in_order, const MapSide& from,
                                   const MapSide& to) {
   if (from.positions && has_part_elsewhere(in_order, from, to)) {
@@ -154,7 +155,7 @@ Renumbering in_order_or_by_places(std::vector<VertexIndex> in_order, const MapSi
   return with_map(std::move(in_order));
 }
 
-/// Vertices as they are.
+/// Map of meshes whose coinciding vertices are not welded.
 Renumbering by_faces_or_graph(const MapSide& reference, const MapSide& other) {
   MapSide from = reference, to = other;
   std::optional<Polygons> joined;
@@ -177,7 +178,7 @@ Renumbering by_faces_or_graph(const MapSide& reference, const MapSide& other) {
   return result;
 }
 
-/// Vertices at one place as one, numbered in the order of their lowest.
+/// Mesh with coinciding vertices welded, numbered by their lowest vertex.
 struct WeldedMesh {
   explicit WeldedMesh(const TriMesh& mesh) : weld(Weld::exact(mesh.positions)) {
     number.resize(weld.representative.size());
@@ -198,8 +199,8 @@ struct WeldedMesh {
   MapSide side() const { return {&polygons, static_cast<int>(vertices.size()), &positions}; }
 
   Weld weld;
-  std::vector<VertexIndex> number;    ///< of each vertex
-  std::vector<VertexIndex> vertices;  ///< the lowest one of each number
+  std::vector<VertexIndex> number;    ///< welded number of each vertex
+  std::vector<VertexIndex> vertices;  ///< lowest vertex of each welded number
   Positions positions;
   Polygons polygons;
 };
@@ -233,7 +234,6 @@ MapSide side_of(const Connectivity& connectivity, const Positions* positions = n
   return {&connectivity.polygons, connectivity.vertices, positions};
 }
 
-/// A sequence on the vertices of another mesh.
 class RenumberedFrames : public FrameSource {
  public:
   RenumberedFrames(std::shared_ptr<const FrameSource> source,

@@ -25,8 +25,8 @@ namespace {
 
 using Entry = Eigen::Triplet<double>;
 
-/// The matrix that takes one coordinate of vertices and fourth vertices to that row of each T_i: T
-/// = [v2 - v1, v3 - v1, v4 - v1] V^-1.
+/// Matrix that maps one coordinate of vertices and fourth vertices to the matching row of each T_i.
+/// T = [v2 - v1, v3 - v1, v4 - v1] V^-1.
 Eigen::SparseMatrix<double> gradients(const Positions& rest, const Triangles& triangles) {
   const auto vertices = static_cast<int>(rest.rows());
   std::vector<Entry> entries;
@@ -52,8 +52,8 @@ Eigen::SparseMatrix<double> gradients(const Positions& rest, const Triangles& tr
   return matrix;
 }
 
-/// The quadratic form of the T_i's rows: identity |T_i|^2 + smoothness * (|T_i - T_j|^2 for i and
-/// each neighbour j, so that a pair counts twice).
+/// Quadratic form of the T_i's rows: identity |T_i|^2 plus smoothness |T_i - T_j|^2 for each i and
+/// each neighbour j. A pair therefore counts twice.
 Eigen::SparseMatrix<double> couplings(int vertices, const Triangles& triangles, double smoothness,
                                       double identity) {
   std::vector<Entry> entries;
@@ -80,19 +80,19 @@ Eigen::SparseMatrix<double> couplings(int vertices, const Triangles& triangles, 
   return matrix;
 }
 
-/// Positions of vertices and fourth vertices that keep triangles' deformations smooth and small,
-/// with some vertices held and others drawn to places. The unknowns of all solves are the same, so
-/// that one analysis serves them.
+/// Positions of vertices and fourth vertices that keep the triangles' deformations smooth and
+/// small. Some vertices are held, and others are drawn to places. All solves have the same
+/// unknowns, so that one analysis serves them.
 class DeformationSystem {
  public:
-  /// `rest` N x 3; vertices that are not `free` stay where a solve holds them. \pre each
+  /// `rest` is N x 3. Vertices that are not `free` stay at the places given to solve(). \pre each
   /// triangle has an area, each free vertex a triangle, and each connected part a held vertex
   DeformationSystem(const Positions& rest, const Triangles& triangles,
                     const std::vector<bool>& free, double smoothness, double identity);
 
-  /// Positions (N x 3) where each free vertex v is drawn to row v of `drawn_to` with weight
-  /// weights[v], 0 for not at all, and the others are held at their rows of `held`. Throws
-  /// std::runtime_error where the system has no solution.
+  /// Positions (N x 3). Each free vertex v is drawn to row v of `drawn_to` with weight weights[v],
+  /// or not at all if that is 0. The other vertices are held at their rows of `held`. Throws
+  /// std::runtime_error if the system has no solution.
   Positions solve(const Positions& held, const Positions& drawn_to, const Eigen::VectorXd& weights);
 
  private:
@@ -113,7 +113,7 @@ DeformationSystem::DeformationSystem(const Positions& rest, const Triangles& tri
   const Matrix K = couplings(static_cast<int>(rest.rows()), triangles, smoothness, identity);
   const Matrix products = G.transpose() * K * G;
 
-  // Free vertices first, then fourth vertices; held vertices are columns of their own.
+  // Free vertices come first, then fourth vertices; held vertices have columns of their own.
   const auto vertices = static_cast<int>(rest.rows());
   std::vector<int> row(products.rows(), -1), held_column(vertices, -1);
   for (VertexIndex v = 0; v < vertices; ++v) {
@@ -178,14 +178,14 @@ Positions DeformationSystem::solve(const Positions& held, const Positions& drawn
   return result;
 }
 
-/// Borders are matched to borders that are nearer than this share of the target's size.
+/// Largest distance between matched borders, as a share of the target's size.
 constexpr double kBorderReach = 0.02;
 
-/// Closest points that are farther than this share do not count: the back of a head has no place
-/// on a mask.
+/// Largest distance of a closest point, as a share of the target's size. The back of a head has no
+/// place on a mask.
 constexpr double kClosestReach = 0.1;
 
-/// Vertices that one call of a thread asks for.
+/// Vertices per block of a thread.
 constexpr int kVerticesAtATime = 256;
 
 void check_mesh(const TriMesh& mesh, const char* name) {
@@ -194,7 +194,7 @@ void check_mesh(const TriMesh& mesh, const char* name) {
                               ": expected a finite position for each vertex");
 }
 
-/// x -> (x - place) / size makes the target's box about as large as 1, around the origin.
+/// x -> (x - place) / size scales the target's box to a diagonal of 1, around the origin.
 struct Normalisation {
   explicit Normalisation(const SubjectBox& target) : place(target.center), size(target.diagonal) {}
 
@@ -205,7 +205,7 @@ struct Normalisation {
   double size;
 };
 
-/// Whether a marker is on the connected part of each vertex (N).
+/// Returns true for vertices whose connected part has a marker (N).
 std::vector<bool> reached_parts(const SurfaceParts& parts,
                                 const std::vector<VertexIndex>& markers) {
   std::vector<bool> part_reached(parts.count(), false);
@@ -215,7 +215,7 @@ std::vector<bool> reached_parts(const SurfaceParts& parts,
   return reached;
 }
 
-/// Throws MismatchError where two of the target's markers are one point of its surface.
+/// Throws MismatchError if two of the target's markers are one point of its surface.
 void check_places(const std::vector<VertexIndex>& markers, const Weld& weld) {
   std::vector<bool> taken(weld.representative.size(), false);
   for (const VertexIndex v : markers) {
@@ -227,7 +227,7 @@ void check_places(const std::vector<VertexIndex>& markers, const Weld& weld) {
   }
 }
 
-/// The source's surface with vertices at one place as one.
+/// Welded surface of the source.
 struct Source {
   Source(const TriMesh& mesh, const std::vector<Marker>& markers)
       : weld(Weld::exact(mesh.positions)),
@@ -260,7 +260,7 @@ struct Source {
     }
   }
 
-  /// How the border leads at each vertex of it.
+  /// Sets the direction of the border at each of its vertices.
   void set_border_directions(const Positions& positions) {
     along_border.setZero();
     for (const BorderEdge& edge : borders) {
@@ -273,18 +273,18 @@ struct Source {
   }
 
   Weld weld;
-  Triangles triangles;                 ///< on the lowest vertices of each place
-  std::vector<VertexIndex> target_of;  ///< of the lowest vertex at a marker; -1
+  Triangles triangles;                 ///< on welded vertices
+  std::vector<VertexIndex> target_of;  ///< of each welded vertex; -1 without a marker
   Positions along_border;
   std::vector<bool> reached, free;
   std::vector<BorderEdge> borders;
   std::vector<bool> on_border;
 };
 
-/// Where free vertices are drawn to, and which.
+/// Places to which free vertices are drawn.
 struct ClosestPoints {
   Positions places;
-  Eigen::VectorXd counts;  ///< 1 or 0
+  Eigen::VectorXd counts;  ///< 1 if the vertex has a place, or 0
 };
 
 ClosestPoints closest_points(const Source& source, const Positions& positions,
@@ -314,7 +314,7 @@ ClosestPoints closest_points(const Source& source, const Positions& positions,
   return result;
 }
 
-/// Weight of the closest points in a step, 0 the first one.
+/// Weight of the closest points in a step; the first step is 0.
 double closest_weight(const SurfaceFitOptions& options, int step) {
   if (options.steps < 2) return options.last_closest;
   const double share = static_cast<double>(step) / (options.steps - 1);
@@ -357,7 +357,7 @@ SurfaceFit fit_to_surface(const TriMesh& source_mesh, const TriMesh& target_mesh
     if (source.target_of[v] >= 0) held.row(v) = target.row(source.target_of[v]);
   }
 
-  // Each of the solves counts the same, and the preparation as one more.
+  // The preparation and each solve have equal shares of the progress.
   const double share = 1.0 / (options.steps + 2);
   DeformationSystem system(start, source.triangles, source.free, options.smoothness,
                            options.identity);

@@ -14,10 +14,10 @@
 namespace mimetra {
 namespace {
 
-/// Numbers 0 .. n - 1 in classes, which are split.
+/// Partition of the numbers 0 .. n - 1 into classes that can be split.
 class Partition {
  public:
-  /// \pre classes are numbered from 0 on, each with a member
+  /// \pre classes are numbered from 0 without gaps
   explicit Partition(std::vector<int> class_of)
       : class_of_(std::move(class_of)), elements_(class_of_.size()), place_(class_of_.size()) {
     std::iota(elements_.begin(), elements_.end(), 0);
@@ -45,8 +45,8 @@ class Partition {
     place_[elements_[from]] = from;
   }
 
-  /// The marked members of each class become one of their own where there are others; calls
-  /// `on_split` with both classes. Nothing is marked then.
+  /// Splits the marked members from each class that also has others. Calls `on_split` with both
+  /// classes. No number is marked afterwards.
   template <typename OnSplit>
   void split_marked(OnSplit on_split) {
     for (const int each : std::exchange(touched_, {})) {
@@ -62,8 +62,8 @@ class Partition {
 
  private:
   struct Range {
-    int first, end;  ///< of elements_
-    int marked;      ///< the first ones
+    int first, end;  ///< range in elements_
+    int marked;      ///< number of marked elements, which come first
   };
 
   std::vector<int> class_of_, elements_, place_;
@@ -71,7 +71,7 @@ class Partition {
   std::vector<int> touched_;
 };
 
-/// Classes of kinds, without those that no half-edge is of.
+/// Classes by kind, numbered without gaps.
 std::vector<int> classes_of_kinds(const FaceGraph& a, const FaceGraph& b) {
   std::vector<int> kinds;
   for (const FaceGraph* graph : {&a, &b}) {
@@ -86,7 +86,8 @@ std::vector<int> classes_of_kinds(const FaceGraph& a, const FaceGraph& b) {
   return kinds;
 }
 
-/// The half-edges of two graphs in one row: which each one follows, and which lies across; -1.
+/// Half-edges of two graphs in one list, with the previous half-edge of each and the opposite one,
+/// or -1.
 struct Arrivals {
   Arrivals(const FaceGraph& a, const FaceGraph& b) : before(a.size() + b.size()) {
     for (const FaceGraph* graph : {&a, &b}) {
@@ -137,7 +138,8 @@ Colours::Colours(const FaceGraph& a, const FaceGraph& b) {
     waits[each] = true;
     waiting.push_back(each);
   };
-  // Of a class whose members all lead where they did, the smaller part tells what the whole would.
+  // The other classes are already split by a class that does not wait, so that its smaller half
+  // suffices.
   const auto on_split = [&](int split, int added) {
     waits.push_back(false);
     const bool is_smaller = !waits[split] && partition.size(split) < partition.size(added);
@@ -162,13 +164,13 @@ Colours::Colours(const FaceGraph& a, const FaceGraph& b) {
 
 namespace {
 
-/// Half-edges that are followed in all for one part before it counts as too symmetric.
+/// Number of half-edges to follow for one part, after which it counts as too symmetric.
 constexpr double kMostWork = 1e8;
 
-/// A map of half-edges and vertices that grows by whole parts.
+/// A map of half-edges and vertices that grows by whole connected parts.
 class GraphMap {
  public:
-  /// With `keeps_faces` each face goes to that of its number only.
+  /// With `keeps_faces`, each face maps only to the face of the same number.
   GraphMap(const FaceGraph& from, int from_vertices, const FaceGraph& to, int to_vertices,
            bool keeps_faces)
       : from_(from),
@@ -182,8 +184,8 @@ class GraphMap {
   const std::vector<VertexIndex>& vertices() const { return vertex_image_; }
   const std::vector<VertexIndex>& preimages() const { return vertex_preimage_; }
 
-  /// Maps the part of `half_edge` so that this goes to `image`. False where that does not fit; then
-  /// nothing changes.
+  /// Maps the part of `half_edge` so that `half_edge` maps to `image`. Returns false and changes
+  /// nothing if that does not fit.
   bool grow(int half_edge, int image) {
     added_.clear();
     added_vertices_.clear();
@@ -197,7 +199,7 @@ class GraphMap {
     return false;
   }
 
-  /// Takes the last part back.
+  /// Removes the last part.
   void undo() {
     for (const int h : added_) preimage_[std::exchange(image_[h], -1)] = -1;
     for (const VertexIndex v : added_vertices_) {
@@ -243,8 +245,8 @@ class GraphMap {
   std::vector<VertexIndex> added_vertices_;
 };
 
-/// Vertices that no face holds are paired in ascending order, each with the nearest one left where
-/// positions may decide. \pre as many in both meshes
+/// Completes the map by the vertices without a face, in ascending order. If positions may decide,
+/// each gets the nearest one left. \pre both meshes have as many
 std::vector<VertexIndex> with_loose(std::vector<VertexIndex> image,
                                     const std::vector<VertexIndex>& preimage, const MapSide& from,
                                     const MapSide& to) {
@@ -270,7 +272,7 @@ std::vector<VertexIndex> with_loose(std::vector<VertexIndex> image,
 /// Finds the images of one part after another.
 class Search {
  public:
-  /// Half-edges of the other mesh that may be the image of one.
+  /// Half-edges of the other mesh that may be the image of a half-edge.
   using Candidates = std::function<std::vector<int>(int)>;
 
   Search(MapSide from, MapSide to, bool keeps_faces)
@@ -283,11 +285,12 @@ class Search {
   const FaceGraph& graph() const { return graph_; }
   const FaceGraph& other() const { return other_; }
 
-  /// Why there is no map; empty where vertices() has it.
+  /// Returns why there is no map, or an empty text if vertices() has the map.
   std::string run(const std::vector<int>& starts, const Candidates& candidates) {
     std::vector<int> left = starts;
     while (!left.empty()) {
-      // Parts that touch one with a known image may have one map only: again until nothing changes.
+      // A part that touches a mapped part may have only one map left. The loop repeats until
+      // nothing changes.
       const std::size_t before = left.size();
       std::vector<int> open;
       for (const int start : left) {
@@ -316,7 +319,7 @@ class Search {
     return "face " + std::to_string(graph_.face[half_edge]) + " of the reference";
   }
 
-  /// The first images of `start` that fit, up to two.
+  /// First images of `start` that fit, at most two.
   std::vector<int> fitting(int start, const std::vector<int>& candidates) {
     std::vector<int> images;
     for (const int candidate : candidates) {
@@ -328,7 +331,7 @@ class Search {
     return images;
   }
 
-  /// How far the vertices of the last part are from their images: sum of squares.
+  /// Sum of squared distances between the last part's vertices and their images.
   double distance(const Positions& carried) const {
     double sum = 0;
     for (const VertexIndex v : map_.added_vertices()) {
@@ -337,7 +340,7 @@ class Search {
     return sum;
   }
 
-  /// The image of `start` that is clearly nearer than all others; -1 where none is.
+  /// Image of `start` that is clearly nearer than all others; -1 if there is none.
   int nearest_image(int start, const std::vector<int>& candidates, const Positions& carried) {
     int nearest = -1;
     double least = std::numeric_limits<double>::infinity(), second = least, work = 0;
@@ -373,7 +376,7 @@ class Search {
   GraphMap map_;
 };
 
-/// A half-edge of each part: that for which `rarity` is least, of equals the lowest.
+/// One half-edge of each part: the half-edge with the least `rarity`, and the lowest of equal ones.
 template <typename Rarity>
 std::vector<int> starts_of(const FaceGraph& graph, Rarity rarity) {
   std::vector<bool> seen(graph.size(), false);
@@ -412,7 +415,7 @@ Similarity told_by(const std::vector<VertexIndex>& image, const MapSide& from, c
                             (*to.positions)(images, Eigen::all));
     }
   } catch (const MismatchError&) {
-    // Points on a line tell no similarity.
+    // Collinear points determine no similarity.
   }
   return {};
 }

@@ -8,37 +8,37 @@
 #include "toolkit/mesh/similarity.h"
 #include "toolkit/mesh/tri_mesh.h"
 
-/// Maps of the vertices of one mesh onto those of another that has the same faces. Internal to
-/// renumbering().
+/// Maps between the vertices of two meshes that have the same faces. Internal to renumbering().
 namespace mimetra {
 
-/// What lies beyond a side of a face.
+/// Kind of a face's side, by the faces beyond it.
 enum class EdgeKind : std::uint8_t {
-  inner,    ///< one other face, oriented alike
-  border,   ///< nothing; also for a side from a vertex to itself
-  tangled,  ///< more than one other face, or one oriented the other way
+  inner,    ///< one other face with the same orientation
+  border,   ///< no other face; also a side from a vertex to itself
+  tangled,  ///< several other faces, or one with the opposite orientation
 };
 
-/// Polygons as they are given, and how they are joined. The half-edge c of a mesh leads from corner
-/// c of its polygons to the next corner of that polygon.
+/// Polygons and their adjacency. Half-edge c leads from corner c of the polygons to the next corner
+/// of the same polygon.
 struct FaceGraph {
-  /// Throws std::invalid_argument that names the first face with a vertex outside 0 ..
-  /// `vertices` - 1.
+  /// Throws std::invalid_argument if a vertex is outside 0 .. `vertices` - 1. The message names the
+  /// first such face.
   FaceGraph(int vertices, const Polygons& polygons);
 
   int size() const { return static_cast<int>(next.size()); }
 
-  std::vector<VertexIndex> vertex;  ///< where each half-edge begins
+  std::vector<VertexIndex> vertex;  ///< first vertex of each half-edge
   std::vector<int> face, next;
-  std::vector<int> opposite;  ///< -1 but for inner edges
+  std::vector<int> opposite;  ///< -1 except for inner edges
   std::vector<EdgeKind> kind;
 };
 
-/// Colours of the half-edges of two meshes by how faces are joined around them, however far away:
-/// half-edges of one colour may be each other's image, others cannot. Takes n log n steps.
+/// Colours of the half-edges of two meshes by how faces are joined around them, at any distance.
+/// Only half-edges of one colour can map to each other. Takes n log n steps.
 ///
 /// [Hopcroft. An n log n algorithm for minimizing states in a finite automaton. Theory of Machines
-/// and Computations, 1971]: half-edges are states, the next one and the one across their letters.
+/// and Computations, 1971]. Half-edges are the states, and the letters lead to the next half-edge
+/// and to the opposite one.
 struct Colours {
   Colours(const FaceGraph& a, const FaceGraph& b);
 
@@ -46,33 +46,36 @@ struct Colours {
   std::vector<int> of_a, of_b;  ///< colour of each half-edge
 };
 
-/// What one of the two meshes is in the search.
+/// One of the two meshes in the search.
 struct MapSide {
   const Polygons* polygons;
   int vertices;
-  const Positions* positions;  ///< null where positions may not decide
+  const Positions* positions;  ///< null if positions must not decide
 };
 
-/// Of two maps of one part the nearer one is taken where the other is this many times as far.
+/// Of two maps of one part, the nearer is taken if the other is this many times as far (root mean
+/// square).
 constexpr double kClearlyFarther = 2;
 
-/// The similarity from `from` to `to` that the vertices with an image tell (-1: none); the identity
-/// where they tell none.
+/// Similarity from `from` to `to`, fitted to the vertices with an image (-1: none). The identity if
+/// they do not determine one.
 Similarity told_by(const std::vector<VertexIndex>& image, const MapSide& from, const MapSide& to);
 
-/// The image of each vertex: corner for corner, as the faces stand. None where that does not fit.
+/// Image of each vertex if faces are equal corner by corner. Empty if they are not.
 std::optional<std::vector<VertexIndex>> map_by_corners(const MapSide& from, const MapSide& to);
 
-/// Face for face, from some corner each.
+/// Image of each vertex if faces are equal one by one, each from some corner. Empty if there is no
+/// such map, or several between which positions do not decide.
 std::optional<std::vector<VertexIndex>> map_by_faces(const MapSide& from, const MapSide& to);
 
-/// A map, or why there is none.
+/// A map, or the reason why there is none.
 struct FoundMap {
   std::vector<VertexIndex> vertices = {};
-  std::string why_not = {};  ///< empty where there is one
+  std::string why_not = {};  ///< empty if there is a map
 };
 
-/// By how faces are joined and bounded, and of symmetric parts by positions where they may decide.
+/// Map by how faces are joined and bounded. Positions decide between the maps of symmetric parts,
+/// if they may.
 FoundMap map_by_graph(const MapSide& from, const MapSide& to);
 
 }  // namespace mimetra

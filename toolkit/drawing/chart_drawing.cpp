@@ -29,11 +29,12 @@ namespace mimetra {
 
 namespace {
 
-/// Letters are this part of a chart's height, but never too small to read.
+/// A chart is this many letters high, but letters stay large enough to read.
 constexpr int kLettersPerChart = 36;
 constexpr int kSmallestChartLetters = 11;
 
-/// Without the yellow of [Okabe, Ito. Color universal design. 2008], which nobody sees on white.
+/// The palette of [Okabe, Ito. Color universal design. 2008] without yellow, which is invisible on
+/// white.
 constexpr std::array<Color, 7> kSeriesColors = {{{0, 114, 178},
                                                  {213, 94, 0},
                                                  {0, 158, 115},
@@ -42,7 +43,7 @@ constexpr std::array<Color, 7> kSeriesColors = {{{0, 114, 178},
                                                  {230, 159, 0},
                                                  {60, 60, 60}}};
 
-/// Where a value lies along an axis. VTK's own logarithmic axes leave out decades and labels.
+/// Position of a value along an axis. VTK's own logarithmic axes omit decades and labels.
 double scaled(double value, const ChartAxis& axis) {
   return axis.scale == ChartScale::logarithmic ? std::log10(value) : value;
 }
@@ -58,7 +59,7 @@ struct Range {
   double length() const { return last - first; }
 };
 
-/// The part of an axis that holds all values with some space at the ends, scaled.
+/// Range of an axis for all values, scaled, with some space at the ends.
 Range range_of(const Chart& chart, const ChartAxis& axis,
                std::vector<double> ChartSeries::*values) {
   constexpr double kSpace = 0.06;
@@ -71,7 +72,7 @@ Range range_of(const Chart& chart, const ChartAxis& axis,
   return {range.first - space, range.last + space};
 }
 
-/// Round numbers at even distances, as near to five of them as 1, 2 and 5 allow.
+/// About five round numbers at even distances, which are 1, 2 or 5 times a power of ten.
 std::vector<double> even_ticks(const Range& range) {
   constexpr double kTicks = 5;
   const double rough = range.length() / kTicks;
@@ -88,7 +89,7 @@ std::vector<double> even_ticks(const Range& range) {
   return ticks;
 }
 
-/// Decades, and where these are few also multiples of them; values, not logarithms.
+/// Decades, and multiples of them if there are few; values, not logarithms.
 std::vector<double> decade_ticks(const Range& range) {
   constexpr double kManyDecades = 2.2, kOneDecade = 1, kHalfDecade = 0.5;
   const std::vector<int> factors = range.length() > kManyDecades ? std::vector{1}
@@ -170,7 +171,7 @@ vtkSmartPointer<vtkChartXY> chart_item(const Chart& chart, int letters) {
            letters);
   shown->SetShowLegend(chart.legend);
   vtkChartLegend& legend = *shown->GetLegend();
-  legend.SetInline(false);  // below the axes, where no curve runs
+  legend.SetInline(false);  // below the axes, clear of all curves
   legend.SetHorizontalAlignment(vtkChartLegend::CENTER);
   legend.SetVerticalAlignment(vtkChartLegend::BOTTOM);
   legend.GetPen()->SetOpacity(0);
@@ -233,7 +234,7 @@ Image drawn(const std::vector<Chart>& row, const ChartSize& size) {
   for (std::size_t i = 0; i < row.size(); ++i) {
     const auto shown = chart_item(row[i], letters);
     shown->SetAutoSize(false);
-    // Space for the last tick's label, which is centred on the end of its axis.
+    // Leave space for the last tick's label, which is centred on the end of its axis.
     const double left = static_cast<double>(i) * size.width;
     shown->SetSize(vtkRectf(static_cast<float>(left), 0, static_cast<float>(size.width - letters),
                             static_cast<float>(height)));

@@ -21,11 +21,11 @@ namespace mimetra {
 
 namespace {
 
-/// An OpenGL context without a surface. The display belongs to the process and stays open: drivers
-/// do not give back all they took when it is closed.
+/// An OpenGL context without a surface. The display belongs to the process and stays open, because
+/// drivers do not return all their memory when it is closed.
 class EglContext {
  public:
-  /// Null where EGL has none to offer.
+  /// Returns null if EGL offers no context.
   static std::unique_ptr<EglContext> create() {
     auto context = std::unique_ptr<EglContext>(new EglContext);
     return context->start() ? std::move(context) : nullptr;
@@ -37,7 +37,7 @@ class EglContext {
     eglDestroyContext(display_, context_);
   }
 
-  /// False where this thread has another one current.
+  /// Returns false if another context is current in this thread.
   bool make_current() const {
     return eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
   }
@@ -90,19 +90,19 @@ vtkSmartPointer<vtkRenderWindow> window_on_current_context() {
   window->SetIsDirect(1);
   window->SetSupportsOpenGL(1);
   window->SetReadyForRendering(true);
-  // VTK's loader complains that there is no GLX, after it has found every function it needs.
+  // VTK's loader complains about missing GLX after it has found every function it needs.
   const SilentVtk silent;
   window->InitializeFromCurrentContext();
   return window;
 }
 
-/// Smooth edges; what Mesa's software renderer offers at most.
+/// Samples for smooth edges: the maximum of Mesa's software renderer.
 constexpr int kSamples = 4;
 
 }  // namespace
 
 struct OffscreenWindow::State {
-  // The window needs the context until it is gone.
+  // The window needs the context until it is destroyed.
   std::unique_ptr<EglContext> context;
   vtkSmartPointer<vtkRenderWindow> window;
 
@@ -131,7 +131,7 @@ struct OffscreenWindow::State {
         "call it from another thread");
   }
 
-  /// As a new one.
+  /// Resets the window to the state of a new one.
   void empty() const {
     while (vtkRenderer* renderer = window->GetRenderers()->GetFirstRenderer()) {
       window->RemoveRenderer(renderer);
@@ -142,7 +142,7 @@ struct OffscreenWindow::State {
 
 namespace {
 
-/// The innermost of this thread.
+/// Innermost OneWindow of this thread.
 thread_local OneWindow* one_window = nullptr;
 
 }  // namespace

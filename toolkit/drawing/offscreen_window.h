@@ -8,18 +8,18 @@ class vtkRenderWindow;
 
 namespace mimetra {
 
-/// A window of VTK that nobody sees and that needs no display: it draws with OpenGL on an EGL
-/// context without a surface (Mesa does so on any processor).
+/// A hidden VTK window that needs no display. It draws with OpenGL on an EGL context without a
+/// surface (Mesa does so on any processor).
 class OffscreenWindow {
  public:
-  /// Throws std::runtime_error where EGL offers none.
+  /// Throws std::runtime_error if EGL offers no such context.
   OffscreenWindow(int width, int height);
   ~OffscreenWindow();
   OffscreenWindow(const OffscreenWindow&) = delete;
   OffscreenWindow& operator=(const OffscreenWindow&) = delete;
 
   vtkRenderWindow& window() const;
-  /// Draws what the window holds. Throws std::runtime_error where OpenGL has not enough memory.
+  /// Draws the contents of the window. Throws std::runtime_error if OpenGL has not enough memory.
   Image image() const;
 
  private:
@@ -28,7 +28,7 @@ class OffscreenWindow {
   std::unique_ptr<State> state_;
 };
 
-/// While it lives, the windows of its thread are one, as long as there are not two at a time.
+/// While it lives, windows of its thread reuse one window, as long as there is only one at a time.
 class OneWindow {
  public:
   OneWindow();
@@ -38,7 +38,7 @@ class OneWindow {
 
  private:
   friend class OffscreenWindow;
-  /// The one that is free; null before the first, and while it is in use.
+  /// The free window; null before the first, and while the window is in use.
   std::unique_ptr<OffscreenWindow::State> free_;
   OneWindow* outer_;
 };

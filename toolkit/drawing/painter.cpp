@@ -15,7 +15,8 @@ namespace {
 
 constexpr const char* kLibrary = "libmimetra_painter.so.1";
 
-/// Beside the library that holds this code, or from a program's folder; elsewhere the loader looks.
+/// Path of the library beside the binary of this code, or relative to a program's folder. Otherwise
+/// its bare name, for the loader to search.
 std::filesystem::path place_of_library() {
   const std::filesystem::path folder = this_binary().parent_path();
   for (const char* way : {".", "../lib", "../" MIMETRA_LIBRARY_FOLDER}) {
@@ -28,7 +29,7 @@ std::filesystem::path place_of_library() {
 
 const Painter& loaded() {
   const std::filesystem::path place = place_of_library();
-  // Never unloaded: VTK registers what it does at the end of the process.
+  // Never unload it: VTK registers functions that run at the end of the process.
   void* library = dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!library) throw std::runtime_error(std::string("pictures cannot be drawn: ") + dlerror());
   void* symbol = dlsym(library, "mimetra_get_painter");
@@ -63,12 +64,12 @@ std::string png_of(const Image& image) {
 DrawingSession::DrawingSession() : window_(painter().one_window()) {}
 
 double drawing_bytes(const Sheet& sheet) {
-  // Colour and depth in each of four samples a pixel, once resolved, once read, once as PNG, and
-  // what is beside: measured.
+  // Colour and depth of four samples per pixel, one resolved and one read copy, the PNG, and
+  // overhead. Measured.
   constexpr double kBytesPerPixel = 86;
-  // OpenGL without a graphics card, which compiles its shaders: measured for pictures of any size.
+  // OpenGL without a graphics card, including compiled shaders. Measured for pictures of any size.
   constexpr double kOpenGl = 135e6;
-  // Positions, normals, colours and corners, here and in OpenGL: measured with 5 and 325 thousand
+  // Positions, normals, colours and corners, here and in OpenGL. Measured with 5000 and 325 000
   // vertices in 1 to 9 tiles.
   constexpr double kBytesPerVertex = 240;
   const SheetLayout layout = SheetLayout::of(sheet);

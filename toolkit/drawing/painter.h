@@ -9,28 +9,28 @@
 
 namespace mimetra {
 
-/// What draws: libmimetra_painter, which alone needs VTK's renderers. They take longer to load than
-/// a command that draws nothing takes from beginning to end.
+/// Interface of libmimetra_painter, the only library that needs VTK's renderers. Loading them takes
+/// longer than a whole command that draws nothing.
 class Painter {
  public:
   virtual ~Painter() = default;
   virtual Image draw(const Sheet& sheet, const Context& context) const = 0;
   virtual Image draw(const std::vector<Chart>& row, const ChartSize& size) const = 0;
   virtual std::string png_of(const Image& image) const = 0;
-  /// What a DrawingSession holds.
+  /// State of a DrawingSession.
   virtual std::shared_ptr<void> one_window() const = 0;
 };
 
-/// Loads the library when it is first asked for. Throws std::runtime_error where it is missing or
-/// of another version.
+/// Painter of the library, which is loaded on the first call. Throws std::runtime_error if it is
+/// missing or has another version.
 const Painter& painter();
 
-/// In the library: what its Painter does, with VTK's renderers.
+/// Implementations in the library, with VTK's renderers.
 Image drawn(const Sheet& sheet, const Context& context);
 Image drawn(const std::vector<Chart>& row, const ChartSize& size);
 std::string encoded_png(const Image& image);
 
 }  // namespace mimetra
 
-/// What the library shows; null where it is of another version.
+/// Returns the library's painter, or null for another version.
 extern "C" using GetMimetraPainter = const mimetra::Painter * (*)(const char* version);

@@ -1,4 +1,4 @@
-// The one symbol of libmimetra_painter.
+// The only symbol of libmimetra_painter.
 
 #include <string_view>
 

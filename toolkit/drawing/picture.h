@@ -13,11 +13,11 @@
 
 namespace mimetra {
 
-/// From where meshes are seen.
+/// Direction from which meshes are seen.
 struct Viewpoint {
-  /// 0 looks at what faces +z (-y where z is up).
+  /// At 0, faces that look along +z (-y if z is up) are seen from the front.
   double yaw = 15;
-  /// Positive looks from above.
+  /// Positive angles look down from above.
   double pitch = 5;
   UpAxis up = UpAxis::y;
 
@@ -29,38 +29,38 @@ struct Viewpoint {
   static constexpr auto declared() { return std::tuple(kYaw, kPitch, kUp); }
 };
 
-/// What the colours of a row mean: even_color over [minimum, maximum].
+/// Colour scale of a row: even_color() over [minimum, maximum].
 struct ColorBar {
   double minimum = 0;
   double maximum = 1;
   std::string unit;       ///< written after the maximum
-  std::string name = {};  ///< of the values, above it
+  std::string name = {};  ///< name of the values, above the bar
 };
 
-/// What the colours of a row mean that stand for numbers.
+/// Colours of a row that represent numbers.
 struct Legend {
   struct Entry {
     int number;
     Color color;
   };
-  std::string name;  ///< of the numbers, above them
+  std::string name;  ///< name of the numbers, above them
   std::vector<Entry> entries;
 };
 
-/// Letters on a mesh.
+/// Text on a mesh.
 struct TileLabel {
   std::string text;
-  Eigen::RowVector3d position;  ///< their middle
+  Eigen::RowVector3d position;  ///< middle of the text
 };
 
 /// One mesh in a sheet.
 struct Tile {
   Positions positions;        ///< N x 3
-  std::vector<Color> colors;  ///< per vertex (N), or none for kClay
-  double turn = 0;            ///< degrees about the upright axis, besides the sheet's
-  std::string title = {};     ///< above it
+  std::vector<Color> colors;  ///< per vertex (N), or empty for kClay
+  double turn = 0;            ///< degrees about the upright axis, in addition to the sheet's
+  std::string title = {};     ///< above the mesh
   std::vector<TileLabel> labels = {};
-  /// Each point has the colour of the vertex nearest to it, instead of what lies between colours.
+  /// Give each point the colour of the nearest vertex, instead of interpolating colours.
   bool crisp = false;
 };
 
@@ -69,19 +69,19 @@ struct TileRow {
   std::shared_ptr<const Connectivity> connectivity;
   std::vector<Tile> tiles;
   std::optional<ColorBar> bar;
-  Legend legend = {};  ///< without entries where there is none
+  Legend legend = {};  ///< without entries if there is none
 };
 
-/// Meshes in rows and columns, all at one scale and seen from one side without perspective, so that
-/// one scale bar holds for all of them.
+/// Meshes in rows and columns, seen from one side without perspective. All have one scale, so a
+/// single scale bar holds for all of them.
 struct Sheet {
   std::vector<TileRow> rows;
   std::vector<std::string> column_titles;
   Viewpoint viewpoint = {.yaw = 0, .pitch = 0};
   int tile_height = 320;  ///< pixels
-  int letters = 0;        ///< height of letters, pixels; 0 for what suits the tiles
-  std::string unit;       ///< of positions, written at the scale bar
-  bool edges = false;     ///< whether those of polygons are drawn
+  int letters = 0;        ///< height of letters, pixels; 0 to fit the tiles
+  std::string unit;       ///< unit of the positions, written at the scale bar
+  bool edges = false;     ///< whether edges of polygons are drawn
 };
 
 /// Largest width and height of a picture.
@@ -89,16 +89,15 @@ constexpr int kLargestPicture = 16384;
 
 /// Draws a sheet. Light comes from the upper left, so that wrinkles show; vertices at one place are
 /// shaded as one. Throws std::invalid_argument for a sheet without tiles or larger than
-/// kLargestPicture, std::runtime_error where there is no OpenGL or it has not enough memory,
-/// Cancelled.
+/// kLargestPicture, and MismatchError if all vertices of the meshes coincide. Throws
+/// std::runtime_error if there is no OpenGL or not enough memory for it, and Cancelled.
 Image draw(const Sheet& sheet, const Context& context = {});
 
-/// What this thread draws while it lives is drawn by one window: OpenGL starts, and compiles its
-/// shaders, once instead of for each picture, and keeps its memory in between. The pictures are the
-/// same bytes.
+/// While it lives, one window draws all pictures of this thread. OpenGL starts and compiles its
+/// shaders only once, and keeps its memory in between. The pictures have the same bytes.
 class DrawingSession {
  public:
-  /// Throws std::runtime_error where the library that draws is missing.
+  /// Throws std::runtime_error if the drawing library is missing.
   DrawingSession();
   DrawingSession(const DrawingSession&) = delete;
   DrawingSession& operator=(const DrawingSession&) = delete;
@@ -107,10 +106,10 @@ class DrawingSession {
   std::shared_ptr<void> window_;
 };
 
-/// Bytes that draw() takes at its peak.
+/// Peak memory of draw() in bytes.
 double drawing_bytes(const Sheet& sheet);
 
-/// The picture as the bytes of a PNG file.
+/// Bytes of a PNG file of the picture.
 std::string png_of(const Image& image);
 
 }  // namespace mimetra

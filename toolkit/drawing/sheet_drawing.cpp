@@ -40,12 +40,12 @@ namespace {
 
 enum class Align { left, center };
 
-/// Writes into a picture that counts from the upper left corner.
+/// Writes into a picture with the origin in the upper left corner.
 class Pen {
  public:
   Pen(vtkRenderer& renderer, const SheetLayout& layout) : renderer_(renderer), layout_(layout) {}
 
-  /// `baseline` is where the letters stand.
+  /// Writes text on a baseline.
   void write(const std::string& text, int x, int baseline, Align align = Align::left) const {
     if (text.empty()) return;
     vtkNew<vtkTextActor> actor;
@@ -60,7 +60,7 @@ class Pen {
 
   int label_height() const { return std::max(kSmallestLabel, 3 * layout_.text / 4); }
 
-  /// Letters about a middle, light behind, that are to be read on any colour.
+  /// Writes text around a middle, on a light background that makes it readable on any colour.
   void label(const std::string& text, double x, double y) const {
     vtkNew<vtkTextActor> actor;
     actor->SetInput(text.c_str());
@@ -75,7 +75,7 @@ class Pen {
     renderer_.AddActor2D(actor);
   }
 
-  /// Equal boxes of one colour each, from below to above.
+  /// Draws equal boxes of one colour each, from bottom to top.
   void stack(const Box& box, const std::vector<Color>& colors) const {
     vtkNew<vtkPoints> points;
     vtkNew<vtkCellArray> cells;
@@ -115,7 +115,7 @@ std::string with_unit(double value, const std::string& unit) {
   return readable(value, 2) + (unit.empty() ? "" : " " + unit);
 }
 
-/// `text` without what does not fit into `pixels`.
+/// Cuts `text` to the width of `pixels`.
 std::string fitted(const std::string& text, int pixels, int letter_height) {
   constexpr double kLetterWidth = 0.52;  // of its height, on average
   const auto letters =
@@ -137,7 +137,7 @@ void write_bar(const Pen& pen, const ColorBar& bar, const Box& row_end, int text
   pen.write(readable(bar.minimum, 2), x, box.top + box.height);
 }
 
-/// Beside a row: a box of each number's colour, in columns.
+/// Draws a box in each number's colour beside a row, in columns.
 void write_legend(const Pen& pen, const Legend& legend, const Box& row_end,
                   const SheetLayout& layout) {
   const int text = layout.text, lines = layout.legend_lines();
@@ -160,7 +160,7 @@ void write_labels(const Pen& pen, const Tile& tile, const Box& box, const View& 
     const Eigen::Vector3d way = (label.position - center).transpose();
     const Eigen::Vector2d place(box.left + box.width / 2.0 + pixels_per_unit * way.dot(view.right),
                                 box.top + box.height / 2.0 - pixels_per_unit * way.dot(view.up));
-    // The first of those that would lie on each other is written.
+    // If labels would overlap, only the first is written.
     const bool is_free = std::ranges::none_of(written, [&](const Eigen::Vector2d& other) {
       return (place - other).norm() < pen.label_height() * 1.4;
     });
@@ -170,7 +170,7 @@ void write_labels(const Pen& pen, const Tile& tile, const Box& box, const View& 
   }
 }
 
-/// A third of a tile at most, below the last row.
+/// Draws the scale bar below the last row, at most a third of a tile wide.
 void write_scale_bar(const Pen& pen, const Sheet& sheet, const SheetLayout& layout) {
   const double length = round_length(layout.tile_width / 3.0 / layout.pixels_per_unit());
   const int pixels = static_cast<int>(std::lround(length * layout.pixels_per_unit()));
@@ -180,8 +180,8 @@ void write_scale_bar(const Pen& pen, const Sheet& sheet, const SheetLayout& layo
   pen.write(with_unit(length, sheet.unit), box.left + pixels + layout.text / 2, baseline);
 }
 
-/// Adds what is written on a sheet to a renderer over the whole picture: titles of rows and
-/// columns, labels, colour bars, legends and the scale bar.
+/// Adds the writing of a sheet to a renderer over the whole picture: titles, labels, colour bars,
+/// legends and the scale bar.
 void annotate(vtkRenderer& renderer, const Sheet& sheet, const SheetLayout& layout) {
   const Pen pen(renderer, layout);
   for (std::size_t column = 0; column < sheet.column_titles.size(); ++column) {
@@ -219,8 +219,8 @@ vtkSmartPointer<vtkFloatArray> float_rows(const Positions& rows) {
   return array;
 }
 
-/// What is drawn of a tile: its triangles, or where colours are crisp, around each corner of a
-/// triangle the part nearest to it. N' >= N, a colour for each cell.
+/// Cells that are drawn for a crisp tile: around each corner of a triangle the part nearest to it.
+/// N' >= N points, and a colour for each cell.
 struct Cells {
   Positions positions, normals;
   std::vector<std::vector<vtkIdType>> corners;
@@ -245,8 +245,8 @@ struct Cells {
   std::vector<Eigen::RowVector3d> added_positions, added_normals;
 };
 
-/// Splits triangles whose corners differ from their middle to their corners and to those of their
-/// edges that change colour: the others stay whole, as the triangle beyond them has them.
+/// Splits triangles with several colours from their middle to their corners, and to the middles of
+/// edges that change colour. Other edges stay whole, as in the neighbouring triangle.
 Cells crisp_cells(const Tile& tile, const Triangles& triangles, Positions normals) {
   Cells cells{tile.positions, std::move(normals), {}, {}, {}, {}};
   const auto color = [&tile](int v) { return tile.colors[static_cast<std::size_t>(v)]; };
@@ -290,7 +290,8 @@ vtkSmartPointer<vtkUnsignedCharArray> color_array(const std::vector<Color>& colo
   return array;
 }
 
-/// Positions relative to `center`, so that single precision suffices wherever the mesh lies.
+/// Uses positions relative to `center`, so that single precision suffices for any location of the
+/// mesh.
 vtkSmartPointer<vtkPolyData> surface_of(const Tile& tile, const TileRow& row,
                                         const Eigen::RowVector3d& center, const Weld& weld) {
   const auto data = vtkSmartPointer<vtkPolyData>::New();
@@ -338,8 +339,8 @@ vtkSmartPointer<vtkActor> actor_of(vtkPolyData& surface) {
   return actor;
 }
 
-/// The outlines of the polygons, moved by `lift` towards the eye, so that the surface hides none of
-/// those that are seen.
+/// Outlines of the polygons, moved by `lift` towards the eye, so that the surface does not hide
+/// visible ones.
 vtkSmartPointer<vtkActor> edges_of(const Tile& tile, const Polygons& polygons,
                                    const Eigen::RowVector3d& center,
                                    const Eigen::RowVector3d& lift) {
@@ -367,8 +368,8 @@ vtkSmartPointer<vtkActor> edges_of(const Tile& tile, const Polygons& polygons,
   return actor;
 }
 
-/// A key light from the upper left, near enough to the eye that a face has no dark side, a weak one
-/// opposite, and one from above, by which wrinkles show.
+/// Adds a key light from the upper left, close enough to the eye that a face has no dark side. A
+/// weak light opposite fills in, and one from above shows wrinkles.
 void add_lights(vtkRenderer& renderer) {
   struct Source {
     double x, y, z, strength;
@@ -394,7 +395,7 @@ void aim(vtkCamera& camera, const View& view, double half_height, double distanc
   camera.SetClippingRange(0.01 * distance, 2 * distance);
 }
 
-/// Draws with an empty space of the background's colour around.
+/// Renderer for a box of the picture, on a white background and without lights.
 vtkSmartPointer<vtkRenderer> empty_renderer(const Box& box, const SheetLayout& layout) {
   const auto renderer = vtkSmartPointer<vtkRenderer>::New();
   const double width = layout.width, height = layout.height;
@@ -413,7 +414,7 @@ void add_tile(vtkRenderWindow& window, const Sheet& sheet, const SheetLayout& la
   renderer->AddActor(actor_of(*surface_of(tile, tiles, layout.centers[row], weld)));
   const View view = view_of(sheet.viewpoint, tile.turn);
   if (sheet.edges) {
-    // Far enough for a depth buffer, and nearer than a lip is thick.
+    // Far enough for a depth buffer, but less than the thickness of a lip.
     constexpr double kLift = 0.002;
     const Eigen::RowVector3d lift = kLift * layout.reach * view.towards_eye.transpose();
     renderer->AddActor(edges_of(tile, tiles.connectivity->polygons, layout.centers[row], lift));
@@ -443,7 +444,7 @@ Image drawn(const Sheet& sheet, const Context& context) {
     for (std::size_t column = 0; column < sheet.rows[row].tiles.size(); ++column) {
       add_tile(window, sheet, layout, row, column, weld);
     }
-    // What follows this loop takes as long as all of it.
+    // Rendering after this loop takes about as long as the loop.
     context.report(0.5 * static_cast<double>(row + 1) / static_cast<double>(sheet.rows.size()));
   }
   const auto overlay = empty_renderer({0, 0, layout.width, layout.height}, layout);

@@ -14,14 +14,14 @@ namespace mimetra {
 namespace {
 
 constexpr double kSpaceAround = 1.05;
-/// Height of letters beside tiles of this height, pixels: a part of it, a smaller one of large
-/// tiles, and never too small to read.
+/// Height of letters in pixels for tiles of this height: a fraction of it, smaller for large tiles,
+/// but always readable.
 int letters_for(int tile_height) {
   constexpr int kSmallest = 12;
   return std::max(kSmallest, std::min(tile_height / 18, kSmallest + tile_height / 60));
 }
 
-/// Vertices that are seen, of each row: a stray point has no say in how large the others are.
+/// Vertices of each row that triangles use. Stray points do not affect the scale of the meshes.
 using SeenVertices = std::vector<std::vector<VertexIndex>>;
 
 SeenVertices seen_vertices(const Sheet& sheet) {
@@ -32,7 +32,7 @@ SeenVertices seen_vertices(const Sheet& sheet) {
   return seen;
 }
 
-/// Half the width and height that all tiles need, seen from their sides.
+/// Half the width and height that all tiles need in their views.
 Eigen::Vector2d half_extent(const Sheet& sheet, const SeenVertices& seen,
                             const std::vector<Eigen::RowVector3d>& centers) {
   Eigen::Vector2d half = Eigen::Vector2d::Zero();
@@ -108,7 +108,7 @@ SheetLayout SheetLayout::of(const Sheet& sheet) {
     return std::ranges::any_of(row.tiles, [](const Tile& tile) { return !tile.title.empty(); });
   };
   layout.tile_title = std::ranges::any_of(sheet.rows, has_tile_titles) ? line : 0;
-  double beside = 0;  // letters high
+  double beside = 0;  // in letter heights
   for (const TileRow& row : sheet.rows) {
     if (row.bar) beside = std::max(beside, 8.0);
     if (row.legend.entries.empty()) continue;

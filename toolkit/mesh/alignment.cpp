@@ -20,31 +20,31 @@
 namespace mimetra {
 namespace {
 
-/// The robust scale follows the residual that this share of the vertices stays below: so many are
-/// needed to tell the head's motion from the face's. Where at least so many do not move at all, the
-/// scale shrinks to nothing and the fit locks on to them exactly.
+/// The robust scale follows the residual that this share of the vertices stays below. As many must
+/// be still to separate the head's motion from the face's. If they do not move at all, the scale
+/// shrinks to nothing and the fit locks on to them exactly.
 constexpr double kStableShare = 0.05;
-/// The scale starts at the median residual of the plain fit, where every still vertex counts, and
-/// shrinks by no more than this per iteration: faster, and a wrong patch that the jaw's motion made
-/// look still can win.
+/// Least factor between the scales of two iterations. The scale starts at the median residual of
+/// the plain fit, where every still vertex counts. If it shrank faster, a patch that only looks
+/// still because of the jaw's motion could win.
 constexpr double kScaleDecay = 0.7;
 /// Slow convergence means that no vertices are still; more iterations would not make them so.
 constexpr int kMaxIterations = 40;
 /// Change of the largest weight at which the motion has settled.
 constexpr double kConvergedWeightChange = 1e-6;
-/// Weight that every vertex keeps. It fixes the rotation about still vertices that lie on a line
-/// and moves the others' result by less than 1e-10 of their displacement.
+/// Weight that every vertex keeps. It fixes the rotation about still vertices on a line, and moves
+/// the result of the others by less than 1e-10 of their displacement.
 constexpr double kLeastWeight = 1e-10;
-/// The scale stops at this share of the box; positions of double precision carry 1e-15 of it.
+/// Least scale as a share of the box diagonal; double precision resolves positions to 1e-15 of it.
 constexpr double kLeastScale = 1e-12;
-/// Motion below this share of the box is what kLeastWeight and rounding leave.
+/// Motion below this share of the box diagonal is an effect of kLeastWeight and rounding.
 constexpr double kLeastHeadMotion = 1e-9;
-/// Motion within so many standard errors of the fit is noise.
+/// Number of standard errors of the fit below which motion is noise.
 constexpr double kSignificance = 3;
-/// The fit, beside the one pass that judges it, as a part of its progress.
+/// Share of the progress that the fit takes; the rest is the pass that judges it.
 constexpr double kFitShare = 0.9;
 
-/// One weighted set of points, to be carried to many others.
+/// Weighted points that are fitted to many other sets of points.
 class RigidFitter {
  public:
   RigidFitter(const Eigen::Ref<const Positions>& from, const Eigen::VectorXd& weights)
@@ -57,7 +57,7 @@ class RigidFitter {
   }
 
   RigidTransform carry_to(const Eigen::Ref<const Positions>& to) const {
-    // Centred on its first point, so that translations far beyond the box cost no digits.
+    // Relative to the first point, so that translations far beyond the box cost no digits.
     const Eigen::RowVector3d origin = to.row(0);
     const Eigen::Matrix<double, 3, 4> moments = (to.rowwise() - origin).transpose() * moments_;
     RigidTransform transform;
@@ -71,14 +71,14 @@ class RigidFitter {
   Eigen::Matrix<double, Eigen::Dynamic, 4> moments_;
 };
 
-/// What carries `rest` to a frame.
+/// Transform that carries `rest` to a frame.
 RigidTransform motion_to(const PositionsView& frame, const Positions& rest,
                          const RigidFitter& fitter) {
-  // A frame that is the rest pose did not move; rounding would say that it nearly did not.
+  // A frame that equals the rest pose did not move; rounding would give it a tiny motion.
   return frame != rest ? fitter.carry_to(frame) : RigidTransform();
 }
 
-/// A transform as a row of numbers.
+/// Numbers of a transform stored as a row.
 constexpr int kTransformNumbers = 12;
 
 using TransformNumbers = Eigen::Matrix<double, 1, kTransformNumbers>;
@@ -113,7 +113,7 @@ std::vector<RigidTransform> fit_frames(const FrameSource& source, const Eigen::V
   return transforms_of(motion.of_each);
 }
 
-/// Squared distances of each vertex of a frame from the moved rest pose (N).
+/// Computes the squared distance of each vertex of a frame from the moved rest pose (N).
 void squared_residuals(const PositionsView& frame, const Positions& rest,
                        const RigidTransform& motion, Eigen::Ref<Eigen::RowVectorXd> squares) {
   const Eigen::Matrix3d rotation = motion.rotation;
@@ -131,13 +131,13 @@ double quantile(Eigen::VectorXd values, double share) {
   return values[index];
 }
 
-/// Geman and McClure's weights: redescending, so that what moves has no say in the end.
+/// Weights of Geman and McClure, which redescend: moving vertices end with almost no influence.
 Eigen::VectorXd robust_weights(const Eigen::VectorXd& residuals, double scale) {
   const auto ratios = (residuals.array() / scale).square();
   return (1 + ratios).square().inverse().max(kLeastWeight);
 }
 
-/// The motion of the vertices that move least, and how well it is known.
+/// Motion of the vertices that move least, with the weights and residuals of the fit.
 struct StableFit {
   std::vector<RigidTransform> motion;
   Eigen::VectorXd weights;
@@ -145,7 +145,7 @@ struct StableFit {
   Eigen::VectorXd residuals;
 };
 
-/// One fit with these weights.
+/// Fits all frames once with these weights.
 StableFit weighted_fit(const FrameSource& source, Eigen::VectorXd weights, const Context& context) {
   const RigidFitter fitter(source.rest(), weights);
   const int vertices = source.vertices();
@@ -164,9 +164,9 @@ StableFit weighted_fit(const FrameSource& source, Eigen::VectorXd weights, const
           (found.sum / source.frames()).cwiseSqrt()};
 }
 
-/// Iteratively reweighted least squares over all frames at once: one weight per vertex, because a
-/// vertex that is still in one frame only tells little. It uses nothing but residuals, so that a
-/// sequence moved rigidly per frame gives the same weights.
+/// Iteratively reweighted least squares over all frames at once. Each vertex has one weight,
+/// because a vertex that is still in only one frame says little. The weights depend only on
+/// residuals, so moving each frame rigidly does not change them.
 ///
 /// [Geman, McClure. Statistical methods for tomographic image reconstruction. Bull. ISI 52, 1987],
 /// annealed as in [Blake, Zisserman. Visual Reconstruction. MIT Press, 1987]
@@ -192,9 +192,9 @@ StableFit fit_stable(const FrameSource& source, const Context& context) {
   return fit;
 }
 
-/// Whether the motion can be told from none: its root mean square displacement of the stable
-/// vertices against the standard error of a rigid fit to n points with this residual, whose six
-/// unknowns take sqrt(6 / 3n) of it.
+/// Whether the motion differs from none. Compares the root mean square displacement of the stable
+/// vertices with the standard error of a rigid fit to n points with this residual. The six unknowns
+/// make that error sqrt(6 / 3n) of the residual.
 bool is_significant(const FrameSource& source, const StableFit& fit) {
   const Eigen::VectorXd shares = fit.weights / fit.weights.sum();
   double squares = 0;
@@ -210,8 +210,8 @@ bool is_significant(const FrameSource& source, const StableFit& fit) {
 
 using Halves = std::array<Eigen::VectorXd, 2>;
 
-/// Weights of the vertices before and behind the middle of all weight along `heights`; none
-/// elsewhere.
+/// Weights of the vertices before and behind the middle of the total weight along `heights`; 0 for
+/// the vertices of the other half.
 Halves halves_along(const Eigen::VectorXd& heights, const Eigen::VectorXd& weights) {
   std::vector<Eigen::Index> order(heights.size());
   std::iota(order.begin(), order.end(), 0);
@@ -226,7 +226,7 @@ Halves halves_along(const Eigen::VectorXd& heights, const Eigen::VectorXd& weigh
   return halves;
 }
 
-/// What carries the rest pose, told by each half of the weight across each principal axis.
+/// Fitters for both halves of the weighted vertices, split across each principal axis.
 std::vector<std::array<RigidFitter, 2>> fitters_of_halves(const Positions& rest,
                                                           const Eigen::VectorXd& weights) {
   const Eigen::VectorXd shares = weights / weights.sum();
@@ -243,7 +243,7 @@ std::vector<std::array<RigidFitter, 2>> fitters_of_halves(const Positions& rest,
   return fitters;
 }
 
-/// Fewer determine no rotation in each half.
+/// Least number of vertices; with fewer, a half may not determine a rotation.
 constexpr int kLeastVertices = 6;
 
 double disagreement_of_halves(const FrameSource& source, const Eigen::VectorXd& weights,
@@ -267,7 +267,6 @@ double disagreement_of_halves(const FrameSource& source, const Eigen::VectorXd& 
   return std::sqrt(squares.sum.maxCoeff() / source.frames());
 }
 
-/// The frames of another source, each moved rigidly.
 class MovedFrames : public FrameSource {
  public:
   MovedFrames(std::shared_ptr<const FrameSource> source, std::vector<RigidTransform> motion)
@@ -314,7 +313,7 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& cross_covariance) {
 }
 
 Positions RigidTransform::apply(const Eigen::Ref<const Positions>& positions) const {
-  if (is_identity()) return positions;  // bit by bit
+  if (is_identity()) return positions;  // bitwise equal
   return (positions * rotation.transpose()).rowwise() + translation.transpose();
 }
 

@@ -18,14 +18,15 @@ struct RigidTransform {
 
   Positions apply(const Eigen::Ref<const Positions>& positions) const;
   RigidTransform inverse() const;
-  /// Of the rotation; degrees, 0 to 180.
+  /// Angle of the rotation in degrees, 0 to 180.
   double angle() const;
   bool is_identity() const;
 };
 
-/// The rigid transform that carries `from` to `to` (both N x 3) with the least sum of weighted
-/// squared distances: U diag(1, 1, det) V^T, never a reflection. `weights` (N, >= 0) or empty for
-/// ones. Throws std::invalid_argument where sizes differ or all weights are 0.
+/// Rigid transform that carries `from` to `to` (both N x 3) with the least sum of weighted squared
+/// distances. Its rotation is U diag(1, 1, det) V^T, never a reflection. `weights` are N numbers >=
+/// 0; empty means all ones. Throws std::invalid_argument if sizes differ, or if no weight is
+/// positive.
 ///
 /// [Umeyama. Least-squares estimation of transformation parameters between two point patterns.
 /// IEEE PAMI 13(4), 1991]
@@ -33,16 +34,15 @@ RigidTransform rigid_fit(const Eigen::Ref<const Positions>& from,
                          const Eigen::Ref<const Positions>& to,
                          const Eigen::VectorXd& weights = {});
 
-/// The rotation that carries points x to y with the least sum of squared distances, both from their
-/// centres: U diag(1, 1, det) V^T of sum y x^T = U S V^T.
+/// Rotation that carries points x to y, both relative to their centres, with the least sum of
+/// squared distances. It is U diag(1, 1, det) V^T for `cross_covariance` = sum y x^T = U S V^T.
 Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& cross_covariance);
 
 enum class AlignmentVertices {
-  stable,  ///< robust: the vertices that move least, found together with the motion
-  all      ///< least squares over all vertices (reads a moving jaw as rotation)
+  stable,  ///< robust: finds the vertices that move least together with the motion
+  all      ///< least squares over all vertices, so that a moving jaw reads as rotation
 };
 
-/// As people choose it.
 constexpr std::string_view choice_name(AlignmentVertices value) {
   switch (value) {
     case AlignmentVertices::stable:
@@ -60,52 +60,52 @@ struct AlignmentOptions {
   static constexpr auto declared() { return std::tuple(kVertices); }
 };
 
-/// The rigid motion of each frame relative to the rest pose (F).
+/// Rigid motion of each frame relative to the rest pose (F).
 ///
-/// `stable` weighs each vertex, over all frames at once, by how little the rigid motion leaves of
-/// it. Where one vertex in twenty or more is still on the head, the motion is exact; a sequence
-/// that was moved rigidly per frame gives the same result, moved as its rest pose was. Where the
-/// motion found is no larger than noise of the still vertices' own size can feign (three standard
-/// errors of the fit), every transform is the identity.
+/// `stable` fits all frames at once and weighs each vertex by how little residual the rigid motion
+/// leaves. The motion is exact if at least one vertex in twenty is still on the head. Rigid motion
+/// that is added to the frames does not change the aligned sequence, which only follows the rest
+/// pose. If noise of the still vertices explains the motion (up to three standard errors of the
+/// fit), all transforms are the identity.
 ///
-/// `stable` reads all frames up to 40 times, so that a source that is slow to read should be
-/// stored(). Throws what reading throws, Cancelled.
+/// `stable` reads all frames up to 41 times; pass slow sources through stored() first. Throws
+/// whatever reading throws, and Cancelled.
 std::vector<RigidTransform> rigid_motion(const FrameSource& source,
                                          const AlignmentOptions& options = {},
                                          const Context& context = {});
 
-/// The motion of what moves least, and how well that tells it.
+/// Motion of the vertices that move least, and how reliable it is.
 struct StableMotion {
-  /// As rigid_motion() finds it (F).
+  /// Result of rigid_motion() (F).
   std::vector<RigidTransform> motion;
-  /// How far the stillest vertices still move: what the motion leaves of the one that one in twenty
-  /// stays below, root mean square over the frames.
+  /// Remaining motion of the stillest vertices: root mean square residual over the frames, 5th
+  /// percentile over the vertices.
   double stillest = 0;
-  /// The vertices that tell the motion, by weight, are halved across each of their three principal
-  /// axes: root mean square angle between the rotations that two halves tell, the largest of the
-  /// three; degrees. Where a still part of the head tells them it is 0 up to noise.
+  /// Disagreement between halves of the vertices, in degrees. The weighted vertices are halved
+  /// across each of their three principal axes, and each half gives a rotation per frame. This is
+  /// the root mean square angle between the two rotations, for the worst axis. It is 0 up to noise
+  /// if part of the head is still.
   double disagreement = 0;
 };
 
-/// Above this disagreement, in degrees, no vertex is still enough to tell the head's motion. Where
-/// vertices are still, halves disagree by up to 0.03 with noise of 0.1 % of the size, and by 0.24
-/// where they are few; on faces that move everywhere by 0.5 and more, and the motion is then wrong
-/// by 0.2 to 1.6.
+/// Largest disagreement, in degrees, at which the head's motion is reliable. With still vertices,
+/// halves disagree by up to 0.03 at noise of 0.1 % of the size, or 0.24 if few. On faces that move
+/// everywhere, they disagree by at least 0.5, and the motion is wrong by 0.2 to 1.6.
 constexpr double kUncertainDisagreement = 0.35;
 
-/// rigid_motion() with AlignmentVertices::stable. Throws the same.
+/// Computes rigid_motion() with AlignmentVertices::stable. Throws as rigid_motion().
 StableMotion stable_motion(const FrameSource& source, const Context& context = {});
 
-/// Frame f becomes motion[f].apply(frame f) when it is read; the rest pose stays as it is. Throws
-/// MismatchError where the count differs from the frames.
+/// Source whose frame f is motion[f].apply(frame f), computed on reading; the rest pose is
+/// unchanged. Throws MismatchError unless there is one transform per frame.
 std::shared_ptr<const FrameSource> with_motion(std::shared_ptr<const FrameSource> source,
                                                std::vector<RigidTransform> motion);
 
-/// The opposite: motion[f] carries frame f of the result to frame f of the source.
+/// Inverse of with_motion(): motion[f] carries frame f of the result to frame f of the source.
 std::shared_ptr<const FrameSource> without_motion(std::shared_ptr<const FrameSource> source,
                                                   const std::vector<RigidTransform>& motion);
 
-/// A sequence without its rigid motion, and that motion.
+/// A sequence without its rigid motion, and the motion that was removed.
 struct Alignment {
   MeshSequence sequence;
   /// motion[f] carries frame f of `sequence` to frame f of the input (F).
@@ -116,10 +116,11 @@ struct Alignment {
 Alignment align(const MeshSequence& sequence, const AlignmentOptions& options = {},
                 const Context& context = {});
 
-/// Removes the given motion (F). Throws MismatchError where the count differs from the frames.
+/// Removes the given motion (F). Throws MismatchError unless there is one transform per frame.
 Alignment align(const MeshSequence& sequence, std::vector<RigidTransform> motion);
 
-/// Gives the motion (F) back. Throws MismatchError.
+/// Applies the motion (F) to the frames. Throws MismatchError unless there is one transform per
+/// frame.
 MeshSequence with_motion(const MeshSequence& sequence, std::vector<RigidTransform> motion);
 
 /// The sequence of align(sequence).

@@ -11,7 +11,6 @@
 namespace mimetra {
 namespace {
 
-/// One process alone.
 class NoOthers : public Ranks {
  public:
   int rank() const override { return 0; }

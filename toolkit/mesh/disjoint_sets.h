@@ -6,10 +6,10 @@
 
 namespace mimetra {
 
-/// Numbers 0 .. n - 1 in sets, which are joined; the lowest member stands for its set.
+/// Disjoint sets of the numbers 0 .. n - 1. The lowest member represents its set.
 class DisjointSets {
  public:
-  /// Each number alone.
+  /// Starts with each number in a set of its own.
   explicit DisjointSets(int count) : lower_(static_cast<std::size_t>(count)) {
     std::iota(lower_.begin(), lower_.end(), 0);
   }
@@ -28,7 +28,7 @@ class DisjointSets {
  private:
   int& lower(int member) { return lower_[static_cast<std::size_t>(member)]; }
 
-  std::vector<int> lower_;  // in the same set; itself for the lowest
+  std::vector<int> lower_;  // a lower member of the same set, or the number itself if lowest
 };
 
 }  // namespace mimetra

@@ -6,27 +6,27 @@
 
 namespace mimetra {
 
-/// A file is wrong in itself: missing, unreadable, truncated, not what its name says. The message
-/// starts with the path.
+/// An unusable input file: missing, unreadable, truncated, or not of the format that its name
+/// implies. The message starts with the path.
 class IoError : public std::runtime_error {
  public:
   IoError(std::string_view path, std::string_view message);
 };
 
-/// Inputs that are sound by themselves contradict each other or what was asked: another vertex
-/// count, another connectivity, no known weight name, more components than vertices.
+/// Valid inputs that contradict each other or the request: another vertex count or connectivity, an
+/// unknown weight name, more components than vertices.
 class MismatchError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
 };
 
-/// A file cannot be written or exists already. The message starts with the path.
+/// A file that cannot be written or exists already. The message starts with the path.
 class OutputError : public std::runtime_error {
  public:
   OutputError(std::string_view path, std::string_view message);
 };
 
-/// The caller's progress function asked to stop.
+/// Thrown when the caller's progress function asks to stop.
 class Cancelled : public std::runtime_error {
  public:
   Cancelled();

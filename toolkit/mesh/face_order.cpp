@@ -17,11 +17,10 @@ std::span<const int> corners_of(const Polygons& polygons, int face) {
   return std::span(polygons.corners).subspan(first, last - first);
 }
 
-/// A polygon from its lowest corner on, in the direction that is first in order: alike for all ways
-/// to write one.
+/// Normal form of a polygon: it starts at the lowest corner, in the direction that sorts first.
 struct Canonical {
   std::vector<int> corners;
-  bool is_turned = false;  // against how it is wound
+  bool is_turned = false;  // the direction is opposite to the winding
 };
 
 Canonical canonical(std::span<const int> corners) {
@@ -39,7 +38,6 @@ Canonical canonical(std::span<const int> corners) {
   return least;
 }
 
-/// Finds polygons of a mesh.
 class PolygonIndex {
  public:
   explicit PolygonIndex(const Polygons& polygons) {
@@ -50,7 +48,7 @@ class PolygonIndex {
     std::ranges::sort(known_, {}, corners);
   }
 
-  /// Whether one is there twice.
+  /// Whether the mesh contains a polygon twice.
   bool repeats() const { return std::ranges::adjacent_find(known_, {}, corners) != known_.end(); }
 
   struct Found {
@@ -71,11 +69,12 @@ class PolygonIndex {
   std::vector<Known> known_;
 };
 
-/// Polygons of one mesh in those of a coarser one, or of one that has the same.
+/// Assignment of the polygons of a mesh to polygons of a coarser mesh, or of one with the same
+/// polygons.
 struct Split {
-  std::vector<int> whole;               ///< for each polygon of the finer mesh, the one it lies in
-  std::vector<bool> is_turned;          ///< for each polygon of the coarser, its parts against it
-  std::vector<std::vector<int>> parts;  ///< of each polygon of the coarser, ascending
+  std::vector<int> whole;               ///< coarser polygon that contains each finer polygon
+  std::vector<bool> is_turned;          ///< whether a coarser polygon is wound against its parts
+  std::vector<std::vector<int>> parts;  ///< finer polygons of each coarser polygon, ascending
 };
 
 struct PolygonEdge {
@@ -99,8 +98,8 @@ std::vector<PolygonEdge> sorted_edges(const Polygons& polygons, const std::vecto
   return edges;
 }
 
-/// Faces that hang together by edges that none of `wholes` has; nothing where such an edge is not
-/// of two of them, once in each direction.
+/// Groups of faces that are connected by edges that no polygon of `wholes` has. Returns none unless
+/// each such edge belongs to two of the faces, once in each direction.
 std::optional<std::vector<std::vector<int>>> joined_by_inner_edges(const Polygons& fine,
                                                                    const std::vector<int>& faces,
                                                                    const Polygons& coarse,
@@ -127,8 +126,8 @@ std::optional<std::vector<std::vector<int>>> joined_by_inner_edges(const Polygon
   return parts;
 }
 
-/// None unless every polygon of `coarse` is one of `fine` or cut into several, wound all alike, and
-/// no polygon is there twice.
+/// Returns none unless every polygon of `coarse` is a polygon of `fine` or is cut into several that
+/// are wound the same way. Also returns none if a polygon occurs twice.
 std::optional<Split> split_of(const Polygons& coarse, const Polygons& fine) {
   const auto wholes = static_cast<std::size_t>(coarse.size());
   const PolygonIndex index(coarse);
@@ -161,7 +160,7 @@ std::optional<Split> split_of(const Polygons& coarse, const Polygons& fine) {
     const std::vector<VertexIndex> around = outline(fine, group);
     const auto found = around.empty() ? std::nullopt : index.find(around);
     if (!found) return {};
-    // A polygon of c corners is worth c - 2 triangles.
+    // A polygon with c corners consists of c - 2 triangles.
     std::ptrdiff_t missing = std::ssize(around) - 2;
     for (const int part : group) missing -= std::ssize(corners_of(fine, part)) - 2;
     if (missing != 0 || !take(*found, group)) return {};
@@ -169,7 +168,7 @@ std::optional<Split> split_of(const Polygons& coarse, const Polygons& fine) {
   return split;
 }
 
-/// The one of several polygons that has the most of a triangle's corners; the first such.
+/// Polygon of `parts` that shares the most corners with triangle `t`; ties go to the first.
 int nearest_to(const Triangles& triangles, Eigen::Index t, const Polygons& polygons,
                const std::vector<int>& parts) {
   const auto shared = [&](int part) {

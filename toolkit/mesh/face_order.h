@@ -7,14 +7,17 @@
 
 namespace mimetra {
 
-/// The connectivity of `mesh` with the triangles of `reference`, one by one, each wound as its
-/// polygon of `mesh`; none unless both have the same polygons, in any order, each from some corner
-/// and wound either way, and no polygon twice. The polygons of one may be cut in the other, as
-/// quads are into triangles, along any diagonals.
+/// Connectivity of `mesh` with the triangles of `reference`, in their order, each wound as its
+/// polygon of `mesh`.
+///
+/// Returns none unless both have the same polygons, none of them twice. Order, first corner and
+/// winding may differ. The polygons of one mesh may be cut in the other along any diagonals, as
+/// quads are cut into triangles.
 std::optional<Connectivity> in_order_of(const Connectivity& reference, const Connectivity& mesh);
 
-/// The polygon around some faces: their edges that no other of them has the other way round, from
-/// the first such on; empty where these are not one cycle that meets no vertex twice.
+/// Polygon around the given faces. It consists of the edges that no other of these faces has in the
+/// opposite direction, and starts with the first such edge. Empty unless these edges form one cycle
+/// that meets no vertex twice.
 std::vector<VertexIndex> outline(const Polygons& polygons, const std::vector<int>& faces);
 
 }  // namespace mimetra

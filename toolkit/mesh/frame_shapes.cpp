@@ -13,8 +13,8 @@
 namespace mimetra {
 namespace {
 
-// Determinants of maps between centred poses, each scaled by its spread: of a rotation of a head or
-// a mask it is above 0.01; below this one of the two is nearly flat, or they have nothing in
+// Least determinant of a map between centred poses, each scaled by its spread. For a rotated head
+// or mask it exceeds 0.01. Below this limit, one pose is nearly flat or they have nothing in
 // common.
 constexpr double kFlat = 1e-3;
 
@@ -22,7 +22,7 @@ Positions centred(const Eigen::Ref<const Positions>& positions) {
   return positions.rowwise() - positions.colwise().mean();
 }
 
-/// Of the edges at each vertex (N).
+/// Length of the longest edge at each vertex (N).
 Eigen::VectorXd longest_edges(const Positions& positions, const Triangles& triangles) {
   Eigen::VectorXd longest = Eigen::VectorXd::Zero(positions.rows());
   for (const auto& corners : triangles.rowwise()) {
@@ -36,7 +36,7 @@ Eigen::VectorXd longest_edges(const Positions& positions, const Triangles& trian
   return longest;
 }
 
-/// The mesh that frames are poses of.
+/// Shape of the rest pose, to which frames are compared.
 struct RestShape {
   explicit RestShape(const FrameSource& sequence)
       : surface(surface_vertices(sequence.rest(), sequence.triangles())),
@@ -51,7 +51,7 @@ struct RestShape {
 
   std::vector<VertexIndex> surface;
   Triangles triangles;
-  Positions centred_rest;  // of the surface
+  Positions centred_rest;  // surface vertices only
   double of_spread;
   StrayVertices strays;
 };
@@ -85,7 +85,7 @@ FrameShape shape_of(const PositionsView& pose, const RestShape& rest) {
   return shape;
 }
 
-/// A shape as numbers, which ranks send to each other.
+/// Number of values in a shape that ranks send to each other.
 constexpr Eigen::Index kShapeNumbers = 11;
 using ShapeNumbers = Eigen::Matrix<double, 1, kShapeNumbers>;
 
@@ -180,17 +180,18 @@ std::vector<int> jumping_frames(const std::vector<FrameShape>& shapes, double si
   return jumping;
 }
 
-/// Frames, one after the other, in which a vertex strays.
+/// Consecutive frames in which a vertex strays.
 struct StrayRun {
   int first = 0, last = 0;
-  /// Whether it is away in these alone, from one frame to the next: a sequence that begins or ends
-  /// with more than one of them may have changed its shape for good.
+  /// Whether the vertex leaves and returns from one frame to the next. A sequence that begins or
+  /// ends with several such frames may have changed its shape for good.
   bool is_spike = false;
 
   bool holds(int frame) const { return first <= frame && frame <= last; }
 };
 
-/// Around a frame in which a vertex strays: those in which it does not stray by so much less.
+/// Frames around `frame` in which its vertex strays almost as far, by more than shape.stray -
+/// least.
 StrayRun stray_run(const FrameSource& sequence, const RestShape& rest, int frame,
                    const FrameShape& shape, double least) {
   StrayRun run{frame, frame};
@@ -215,7 +216,7 @@ StrayRun stray_run(const FrameSource& sequence, const RestShape& rest, int frame
   return run;
 }
 
-/// By vertices that strayed before: frames are asked for in ascending order.
+/// Cache of the last run of each stray vertex. Frames must be queried in ascending order.
 class StrayRuns {
  public:
   StrayRuns(const FrameSource& sequence, const RestShape& rest)
@@ -234,7 +235,7 @@ class StrayRuns {
   std::map<VertexIndex, StrayRun> last_;
 };
 
-/// "frames 7, 9 are WHAT".
+/// "frames 7, 9 are `what`".
 std::string told(const std::vector<int>& frames, const std::string& what) {
   const bool several = frames.size() > 1;
   return (several ? "frames " : "frame ") + listed(words_of(frames)) +
@@ -264,7 +265,7 @@ OddFrames odd_frames(const FrameSource& sequence, const std::vector<FrameShape>&
     const auto frame = static_cast<int>(f);
     if (is_other_size(shape.spread, odd.usual_spread)) odd.of_other_size.push_back(frame);
     if (shape.is_mirrored) odd.mirrored.push_back(frame);
-    // A frame in another unit is not torn for that.
+    // Another unit alone does not make a frame torn.
     const double unit = rest.of_spread > 0 ? std::max(1.0, shape.spread / rest.of_spread) : 1;
     if (shape.longest_edge > unit * std::max(size / 2, 2 * of_rest.longest_edge)) {
       odd.torn.push_back(frame);

@@ -10,7 +10,6 @@
 namespace mimetra {
 namespace {
 
-/// Some frames of another source.
 class SelectedFrames : public FrameSource {
  public:
   SelectedFrames(std::shared_ptr<const FrameSource> source, std::vector<int> chosen)
@@ -38,7 +37,7 @@ class SelectedFrames : public FrameSource {
     });
   }
 
-  /// Neighbours are read together.
+  /// Reads consecutive frames together.
   template <typename Read>
   void for_each_stretch(int first, FramesView poses, const Read& read) const {
     for (Eigen::Index row = 0; row < poses.rows();) {
@@ -56,7 +55,7 @@ class SelectedFrames : public FrameSource {
   std::vector<int> chosen_;
 };
 
-/// The poses of another source under another header of as many vertices and frames.
+/// Poses of another source under another header with as many vertices and frames.
 class FramesUnderHeader : public FrameSource {
  public:
   FramesUnderHeader(std::shared_ptr<const FrameSource> source, SequenceHeader header)
@@ -75,7 +74,6 @@ class FramesUnderHeader : public FrameSource {
   std::shared_ptr<const FrameSource> source_;
 };
 
-/// Some vertices of another source.
 class VertexFrames : public FrameSource {
  public:
   VertexFrames(std::shared_ptr<const FrameSource> source, VertexIndex first, int count)
@@ -102,7 +100,7 @@ class VertexFrames : public FrameSource {
   VertexIndex first_;
 };
 
-/// Frames of so many numbers that fill `bytes`.
+/// Number of frames, each of this many numbers, that fit into `bytes`.
 int frames_in(std::size_t bytes, Eigen::Index numbers) {
   const std::size_t frame =
       sizeof(double) * static_cast<std::size_t>(std::max<Eigen::Index>(1, numbers));
@@ -113,15 +111,16 @@ Eigen::Index numbers_of_pose(const FrameSource& source) {
   return 3 * Eigen::Index{source.vertices()};
 }
 
-/// `wanted` frames, where `most` fit. Products of matrices take rows in fours.
+/// Rounds `wanted` frames to a multiple of four if `most` allows it: matrix products take rows in
+/// fours.
 int in_fours(int wanted, int most) {
   return most < 4 ? std::max(1, wanted) : std::max(4, wanted / 4 * 4);
 }
 
-/// As many as fit a block, but enough blocks for threads to share.
+/// Number of frames in a block: as many as fit, but few enough to give all threads work.
 int frames_in_block(const FrameSource& source, Eigen::Index numbers) {
   constexpr int kBlocks = 64;
-  // Readers and writers hold a block up to three times more, in their own encodings.
+  // Readers and writers hold a block up to three more times, in their own encodings.
   const int most = frames_in(kBlockBytes / 4, numbers);
   return in_fours(std::min(most, source.frames() / kBlocks + 1), most);
 }
@@ -244,11 +243,11 @@ void for_each_block(const FrameSource& source, const std::function<void(int, con
 FrameNumbers over_frames(const FrameSource& source, Eigen::Index summed, Eigen::Index kept,
                          const std::function<void(int, const FrameBlock&, FrameRows&)>& work,
                          const Context& context) {
-  constexpr int kFewest = 8;  // for threads to share
+  constexpr int kFewest = 8;  // so that threads can share them
   const Eigen::Index columns = summed + kept;
   const Eigen::Index numbers = std::max(numbers_of_pose(source), columns);
   const int most = std::max(kFewest, frames_in(kBlockBytes, numbers)) * context.ranks().count();
-  // What is only kept is in its place already.
+  // Numbers that are only kept are already in place.
   const int held = summed > 0 ? in_fours(most, most) : std::max(1, source.frames());
   const int at_once = frames_in_block(source, numbers);
   FrameRows summands(std::min(held, source.frames()), summed);
@@ -277,8 +276,8 @@ FrameNumbers over_frames(const FrameSource& source, Eigen::Index summed, Eigen::
 
 Positions mean_pose(const FrameSource& source) {
   if (source.frames() == 0) return {};
-  // Eigen's sum of rows takes the first one and adds the others in fours: so does the sum of blocks
-  // of fours that start with the sum so far.
+  // Eigen sums rows by taking the first and adding the others in fours. Summing blocks of fours
+  // that start with the sum so far gives the same bits.
   const int held = 4 * std::max(1, frames_in(kBlockBytes, numbers_of_pose(source)) / 4);
   Frames rows(1 + std::min(held, source.frames() - 1), 3 * Eigen::Index{source.vertices()});
   source.read(0, FramesView(rows.data(), 1, rows.cols()));
@@ -293,7 +292,7 @@ Positions mean_pose(const FrameSource& source) {
 }
 
 double motion(const FrameSource& source, const Context& context) {
-  // One sum a frame, added in their order: the same for every number of threads.
+  // Adds one sum per frame in order, so that the result does not depend on the number of threads.
   Eigen::VectorXd squares(source.frames());
   const auto add_squares = [&](int first, const Frames& poses) {
     for (Eigen::Index row = 0; row < poses.rows(); ++row) {

@@ -32,11 +32,10 @@ fs::path folder_for_temporary_files() {
   return folder;
 }
 
-/// A file without a name.
 int nameless_file(const fs::path& folder) {
   int descriptor = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, S_IRUSR | S_IWUSR);
   if (descriptor >= 0) return descriptor;
-  // Not every file system makes files without names.
+  // Not every file system supports files without names.
   std::string name = (folder / "mimetra-XXXXXX").string();
   descriptor = mkostemp(name.data(), O_CLOEXEC);
   if (descriptor < 0) fail_to_keep(folder, last_error());
@@ -44,8 +43,8 @@ int nameless_file(const fs::path& folder) {
   return descriptor;
 }
 
-/// Calls `transfer` with how many bytes are done until all are; returns false with errno where the
-/// system refuses.
+/// Calls `transfer` with the number of bytes done until all are done. Returns false, with errno
+/// set, if the system refuses.
 template <typename Transfer>
 bool transferred(std::size_t bytes, const Transfer& transfer) {
   for (std::size_t done = 0; done < bytes;) {

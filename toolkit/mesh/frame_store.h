@@ -10,19 +10,20 @@
 
 namespace mimetra {
 
-/// Bytes that are kept while they are needed, in a file that has no name, so that nothing is left
-/// of it however the process ends.
+/// Temporary bytes in a file without a name, which disappears however the process ends.
 class ScratchFile {
  public:
-  /// It lies in std::filesystem::temp_directory_path(). Throws OutputError where it cannot.
+  /// Creates the file in std::filesystem::temp_directory_path(). Throws OutputError on failure.
   ScratchFile();
   ~ScratchFile();
   ScratchFile(const ScratchFile&) = delete;
   ScratchFile& operator=(const ScratchFile&) = delete;
 
-  /// From `offset` on, from several threads. Throws OutputError, as where the disk is full.
+  /// Writes bytes from `offset` on. Several threads may call it. Throws OutputError, for example if
+  /// the disk is full.
   void write(std::size_t offset, std::span<const std::byte> bytes);
-  /// \pre they were written. From several threads. Throws IoError.
+  /// Reads bytes from `offset` on. Several threads may call it. Throws IoError.
+  /// \pre the bytes were written
   void read(std::size_t offset, std::span<std::byte> bytes) const;
 
  private:
@@ -30,19 +31,18 @@ class ScratchFile {
   int descriptor_;
 };
 
-/// Poses that are kept while they are needed: in memory as long as they are few, otherwise in a
-/// ScratchFile.
+/// Temporary poses: in memory up to a limit, otherwise in a ScratchFile.
 class FrameStore : public FrameSource, public FrameSink {
  public:
-  /// Most bytes of poses in memory.
+  /// Default limit of the poses in memory, in bytes.
   static constexpr std::size_t kMemoryBytes = std::size_t{16} << 20;
 
-  /// Throws OutputError where there can be no ScratchFile.
+  /// Throws OutputError if a ScratchFile is needed and cannot be created.
   explicit FrameStore(SequenceHeader header, std::size_t memory_bytes = kMemoryBytes);
 
-  /// Throws std::out_of_range for frames that are not there, OutputError.
+  /// Throws std::out_of_range for missing frames, and OutputError.
   void write(int first, const Frames& poses) override;
-  /// There is no file to return.
+  /// Returns no files, because the poses are temporary.
   std::vector<std::filesystem::path> commit() override { return {}; }
 
   std::shared_ptr<const Frames> in_memory() const override { return memory_; }
@@ -50,7 +50,7 @@ class FrameStore : public FrameSource, public FrameSink {
   bool reads_vertices() const override { return true; }
 
  private:
-  /// \pre they were written
+  /// \pre the frames were written
   void read_frames(int first, FramesView poses) const override;
   void read_some_vertices(int first, VertexIndex vertex, FramesView poses) const override;
 
@@ -58,8 +58,8 @@ class FrameStore : public FrameSource, public FrameSink {
   std::optional<ScratchFile> file_;
 };
 
-/// The source itself where it is quick to read; otherwise its frames, read once, in a FrameStore.
-/// Throws what reading throws, OutputError, Cancelled.
+/// The source itself if it is quick to read; otherwise its frames, read once into a FrameStore.
+/// Throws whatever reading throws, OutputError, and Cancelled.
 std::shared_ptr<const FrameSource> stored(std::shared_ptr<const FrameSource> source,
                                           const Context& context = {});
 

@@ -66,7 +66,7 @@ int almost_welded_vertices(const Positions& positions, const Triangles& triangle
   const Weld weld = Weld::exact(positions);
   constexpr double kAlmost = 1e-6;
   const double reach = kAlmost * diameter(positions, triangles);
-  // Along a line that no grid is straight to.
+  // Along a direction that is not aligned with any grid.
   const Eigen::VectorXd along = positions * Eigen::Vector3d(1, 1.7, 2.3).normalized();
   std::vector<VertexIndex> order;
   for (const VertexIndex v : surface_vertices(positions, triangles)) {
@@ -115,7 +115,7 @@ MeshReport inspect(const Positions& positions, const Connectivity& connectivity)
       weld.count == 0 ? edges.boundary
                       : count_edges(report.vertices, weld.welded(triangles)).boundary;
   report.nonmanifold_edges = edges.nonmanifold;
-  // A triangle without area has no side.
+  // A triangle without area has no orientation.
   report.inconsistent_edges =
       degenerate.empty()
           ? edges.inconsistent

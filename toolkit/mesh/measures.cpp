@@ -17,13 +17,14 @@ Eigen::Vector3d box_sides(const Eigen::Ref<const Positions>& positions) {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-/// Points in a ball are compared one by one from here on.
+/// Size of a ball up to which points are compared one by one.
 constexpr int kFewPoints = 16;
 
-/// Pairs whose bound is above the best by less than rounding are not looked at.
+/// Pairs whose bound exceeds the best distance by less than this share, which is rounding, are
+/// skipped.
 constexpr double kRounding = 1e-14;
 
-/// Points first .. last - 1, and a ball around them.
+/// Points first .. last - 1, with a ball around them.
 struct Ball {
   int first, last;
   Eigen::Vector3d center;
@@ -32,7 +33,7 @@ struct Ball {
   int size() const { return last - first; }
 };
 
-/// Halves a set of points again and again, for the pair that is farthest apart.
+/// Finds the pair of points that is farthest apart by halving the set recursively.
 class FarthestPair {
  public:
   explicit FarthestPair(Points points) : points_(std::move(points)) {
@@ -47,7 +48,7 @@ class FarthestPair {
   }
 
  private:
-  /// Numbers of the halves of each ball; 0 for none.
+  /// Indices of the halves of each ball; 0 if it is not divided.
   struct Halves {
     int lower = 0, upper = 0;
   };
@@ -74,7 +75,7 @@ class FarthestPair {
     return number;
   }
 
-  /// A distance that is large already: from one far point to the next.
+  /// Sets a large initial distance by walking from one far point to the next.
   void start() {
     Eigen::Vector3d from = balls_[0].center;
     for (int steps = 0; steps < 4; ++steps) {

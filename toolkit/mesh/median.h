@@ -9,14 +9,14 @@
 
 namespace mimetra {
 
-/// The median of n >= 1 values, none of them NaN: the upper of two in the middle.
+/// Median of n >= 1 values, none of them NaN; for even n the upper of the two in the middle.
 inline double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
 }
 
-/// The median of what n >= 2 values differ by from one to the next.
+/// Median of the differences between consecutive values. \pre n >= 2
 inline double median_difference(const Eigen::VectorXd& values) {
   std::vector<double> differences;
   differences.reserve(static_cast<std::size_t>(values.size()));

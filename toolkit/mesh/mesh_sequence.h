@@ -9,20 +9,18 @@ namespace mimetra {
 
 /// A sequence in memory.
 ///
-/// All poses are one block, which copies share. The rest pose need not be a frame; where nobody
-/// knows it, it is the first frame and `rest_is_known()` says false.
+/// All poses form one block, which copies share.
 class MeshSequence : public FrameSource {
  public:
   MeshSequence() = default;
-  /// `frames` F x 3N with F >= 1; `times` F, seconds that rise, or empty where nobody knows them;
-  /// `rest` N x 3 where it is known. Throws std::invalid_argument where one of these is not so.
+  /// `frames` is F x 3N with F >= 1. `times` (F) are increasing seconds, or empty if unknown.
+  /// `rest` is N x 3, or empty if unknown. Throws std::invalid_argument otherwise.
   MeshSequence(Connectivity connectivity, Frames frames, Eigen::VectorXd times = {},
                std::optional<Positions> rest = {});
-  /// Shares a connectivity.
   MeshSequence(std::shared_ptr<const Connectivity> connectivity, Frames frames,
                Eigen::VectorXd times = {}, std::optional<Positions> rest = {});
-  /// All frames of `source`; where they are in memory they are shared. Throws what reading throws,
-  /// Cancelled.
+  /// Copies all frames of `source`, or shares them if they are in memory. Throws whatever reading
+  /// throws, and Cancelled.
   explicit MeshSequence(const FrameSource& source, const Context& = {});
 
   /// Positions of frame f (N x 3), a view into this sequence. \pre 0 <= f < frames()
@@ -33,12 +31,13 @@ class MeshSequence : public FrameSource {
   bool is_quick() const override { return true; }
   bool reads_vertices() const override { return true; }
 
-  /// Frames first, first + step, ... before `last`. Throws std::invalid_argument unless
+  /// Frames first, first + step, ... below `last`. Throws std::invalid_argument unless
   /// 0 <= first < last <= frames() and step >= 1.
   MeshSequence slice(int first, int last, int step = 1) const;
   /// The same frames with another rest pose. Throws std::invalid_argument unless it is N x 3.
   MeshSequence with_rest(Positions rest) const;
-  /// The same connectivity, times and rest with other poses, F x 3N.
+  /// The same connectivity, times and rest pose with other poses, F x 3N. Throws
+  /// std::invalid_argument if their shape differs.
   MeshSequence with_frames(Frames frames) const;
 
  private:

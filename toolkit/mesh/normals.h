@@ -4,13 +4,13 @@
 
 namespace mimetra {
 
-/// Normal of each triangle (M x 3), as long as twice its area.
+/// Normal of each triangle (M x 3); its length is twice the area.
 Positions triangle_normals(const Eigen::Ref<const Positions>& positions,
                            const Triangles& triangles);
 
-/// Sum of the normals of each vertex's triangles (N x 3).
+/// Sum of the normals of each vertex's triangles (N x 3), not normalized.
 Positions vertex_normals(const Eigen::Ref<const Positions>& positions, const Triangles& triangles);
-/// The same, of which welded vertices share theirs.
+/// Vertex normals for which welded vertices count as one and get equal normals.
 Positions vertex_normals(const Eigen::Ref<const Positions>& positions, const Triangles& triangles,
                          const Weld& weld);
 

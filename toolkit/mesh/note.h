@@ -7,52 +7,52 @@
 
 namespace mimetra {
 
-/// What a note or an error is about. Who shows it may add how to help it in words of their own: the
-/// command names its options.
+/// Subject of a note or an error. A front end may append advice in its own terms, as the command
+/// does with its options.
 enum class Topic {
   other,
   parting_vertices,    ///< vertices that are welded at rest do not stay together
-  unknown_neutral,     ///< of the source
-  turning_head,        ///< the source's head turns, and that was not taken out
-  uncertain_motion,    ///< no vertex of the source is still enough to tell its head motion
-  joint_motion,        ///< its head motion was found together with a target's expressions
-  no_joint_motion,     ///< that was asked for, and there are no expressions
-  other_rest,          ///< the rest pose is likely not that of the source's face
-  unneutral_rest,      ///< the source's rest pose is likely not its neutral
-  poor_condition,      ///< the regions hardly tell the target's expressions apart
+  unknown_neutral,     ///< the source's neutral pose is unknown
+  turning_head,        ///< the source's head turns, and the motion was not removed
+  uncertain_motion,    ///< no vertex of the source is still enough to give its head motion
+  joint_motion,        ///< the head motion was estimated together with a target's expressions
+  no_joint_motion,     ///< a joint estimate was requested, but there are no expressions
+  other_rest,          ///< the rest pose is probably another face's
+  unneutral_rest,      ///< the source's rest pose is probably not its neutral
+  poor_condition,      ///< the regions hardly distinguish the target's expressions
   completed_regions,   ///< discs were added to the regions for a target's expressions
-  completion_limit,    ///< as many as may be, and it was not enough
-  undetermined_axes,   ///< the rest poses leave open how source and target are turned
-  component_count,     ///< more than the mesh can have
-  no_vertex_inside,    ///< where regions may lie
-  triangle_bound,      ///< no region fits into the share of the triangles that was asked for
-  discs_beyond_bound,  ///< what would complete regions does not fit into that share
+  completion_limit,    ///< added discs reached their limit, and expressions are still hardly seen
+  undetermined_axes,   ///< the rest poses do not determine a rotation between source and target
+  component_count,     ///< more components than the mesh has vertices
+  no_vertex_inside,    ///< no vertex is left where regions are allowed
+  triangle_bound,      ///< no region fits into the requested share of the triangles
+  discs_beyond_bound,  ///< the discs that would complete the regions exceed that share
   few_discs,           ///< all discs together hold less than that share
-  no_selection,        ///< a target is solved for vertices, for which no region can be chosen
-  small_parts,         ///< regions lie on small connected parts of the surface
+  no_selection,        ///< regions cannot be chosen for a target that is solved for vertices
+  small_parts,         ///< regions are on small connected parts of the surface
   large_regions,       ///< a region holds more than half of the mesh
   support_range,       ///< d_min is not below d_max
-  no_expressions,      ///< of the target, where weights are asked for
-  no_pairs,            ///< of left and right among the target's expressions
-  no_exclusives,       ///< among the target's expressions, of those that names tell
-  anchor_vertex,       ///< one that the mesh does not have
-  held_anchor,         ///< an anchor where fixed vertices hold the mesh
-  anchor_and_weights,  ///< the same where they are those of weight 0
-  soft_outside,        ///< Outside::identity where the regions' border is soft
-  visible_crease,      ///< the surface bends at the regions' border as the source does not
-  other_faces,         ///< a target has not the source's faces, and nothing pairs them
-  shifted_markers,     ///< markers fit much better as vertices one lower or higher
-  no_full_weight,      ///< no vertex takes all of the motion, from which a border could fade out
-  poor_match           ///< source and target are hardly paired
+  no_expressions,      ///< weights are requested, but the target has no expressions
+  no_pairs,            ///< no expressions of the target are named as left and right
+  no_exclusives,       ///< no expressions of the target have names known to exclude each other
+  anchor_vertex,       ///< the mesh does not have the anchor vertex
+  held_anchor,         ///< an anchor is given, but fixed vertices hold the mesh already
+  anchor_and_weights,  ///< an anchor is given, but vertices of weight 0 are fixed already
+  soft_outside,        ///< Outside::identity is combined with a soft border of the regions
+  visible_crease,      ///< the surface bends at the regions' border, unlike the source
+  other_faces,         ///< a target has other faces than the source, and no correspondence
+  shifted_markers,     ///< markers fit much better if their vertex numbers are shifted by one
+  no_full_weight,      ///< no vertex takes the full motion, so a border has no start to fade from
+  poor_match           ///< the correspondence of source and target is poor
 };
 
-/// What the user of a computation should know of it.
+/// Information about a computation for its user.
 struct Note {
   Topic topic;
   std::string text;
 };
 
-/// Called with each note, from the thread that computes.
+/// Receives each note, on the computing thread.
 using Notes = std::function<void(const Note&)>;
 
 /// An option that does not fit the data or another option.

@@ -20,7 +20,7 @@
 
 namespace mimetra {
 
-/// Any TriMesh_ArrayKernelT or PolyMesh_ArrayKernelT, or what derives from one.
+/// TriMesh_ArrayKernelT, PolyMesh_ArrayKernelT, or a class derived from one.
 template <typename Mesh>
 concept OpenMeshClass = std::derived_from<Mesh, OpenMesh::BaseKernel> &&
     requires(const Mesh& mesh, OpenMesh::VertexHandle vertex) {
@@ -28,57 +28,65 @@ concept OpenMeshClass = std::derived_from<Mesh, OpenMesh::BaseKernel> &&
   mesh.point(vertex);
 };
 
-/// Positions, faces and texture coordinates (of halfedges, else of vertices) of a mesh; the order
-/// of vertices and faces stays as it is. Throws std::invalid_argument where the mesh has deleted
-/// elements (call garbage_collection first).
+/// Positions, faces and texture coordinates of a mesh. Texture coordinates come from halfedges, or
+/// from vertices if halfedges have none. Vertices and faces keep their order. Throws
+/// std::invalid_argument if the mesh has deleted elements; call garbage_collection() first.
 template <OpenMeshClass Mesh>
 TriMesh from_openmesh(const Mesh& mesh);
 
-/// A mesh of the user's class with the positions, the polygons (the triangles if the class holds
-/// nothing else) and the texture coordinates. These stand on vertices if each vertex has those of
-/// its own number, else on halfedges, 0 at corners without any. Vertices and faces keep their
-/// order, and faces their first corner. Throws MismatchError if halfedges cannot hold the mesh as
-/// it is: the message names a face that has a vertex twice or is wound against its neighbors, or a
-/// vertex where several sheets of faces meet. Throws std::invalid_argument for another number of
-/// positions than of vertices.
+/// Mesh of the user's class with the positions, polygons and texture coordinates of `mesh`. It has
+/// the triangles if the class cannot hold polygons. Vertices and faces keep their order, and faces
+/// their first corner.
+///
+/// Texture coordinates go to vertices if is_textured_by_vertex(). Otherwise they go to halfedges,
+/// with 0 at corners without coordinates.
+///
+/// Throws MismatchError if halfedges cannot represent the mesh. The message names a face that
+/// repeats a vertex or is wound against its neighbors, or a vertex where several sheets of faces
+/// meet. Throws std::invalid_argument unless there is one position per vertex.
 template <OpenMeshClass Mesh>
 Mesh to_openmesh(const TriMesh& mesh);
 
-/// A frame for each mesh, of which all have the faces of the first; `times` as MeshSequence takes
-/// them, and the rest pose is not known. Throws std::invalid_argument that names the first mesh
-/// with others, for no mesh, and as from_openmesh().
+/// Sequence with one frame per mesh. All meshes must have the faces of the first. `times` are as in
+/// MeshSequence; the rest pose is unknown. Throws std::invalid_argument if there is no mesh, or if
+/// faces differ (the message names the first such mesh), and as from_openmesh().
 template <OpenMeshClass Mesh>
 MeshSequence sequence_from_openmesh(const std::vector<Mesh>& meshes, Eigen::VectorXd times = {});
 
-/// A frame for each vertex property of these names, which holds points of the mesh's class or
-/// OpenMesh::Vec3d; the rest pose is the mesh's own. Throws std::invalid_argument that names a
-/// property that is not there, for no name, and as from_openmesh().
+/// Sequence with one frame per named vertex property. Each property holds points of the mesh's
+/// class or OpenMesh::Vec3f or Vec3d. The rest pose is the mesh itself. Throws
+/// std::invalid_argument if a property is missing or has several types (the message names it), if
+/// there are no names, and as from_openmesh().
 template <OpenMeshClass Mesh>
 MeshSequence sequence_from_openmesh(const Mesh& mesh, const std::vector<std::string>& poses,
                                     Eigen::VectorXd times = {});
 
-/// Moves the vertices (N x 3, in their order); everything else on the mesh stays as it is, normals
-/// too. Throws std::invalid_argument for another number of vertices.
+/// Moves the vertices to `positions` (N x 3, in their order). Everything else is unchanged,
+/// including normals. Throws std::invalid_argument if the number of vertices differs.
 template <OpenMeshClass Mesh>
 void set_positions(Mesh& mesh, const Eigen::Ref<const Positions>& positions);
 
-/// The same mesh, with all its properties, at new positions. Throws as set_positions().
+/// Copy of a mesh, with all its properties, at new positions. Throws as set_positions().
 template <OpenMeshClass Mesh>
 Mesh with_positions(Mesh mesh, const Eigen::Ref<const Positions>& positions);
 
-/// Puts each field into the property `v:NAME`, on vertices, or `f:NAME`, on faces, where it takes
-/// the place of one of that name: `v:region`, `v:roi`, `v:distance`, `f:in_L`. Its type is int for
-/// integer fields that it holds, OpenMesh::Vec3d for three columns (`v:component_3`), else double;
-/// a face has the largest value of its triangles. Throws std::invalid_argument that names a field
-/// of another number of columns, of values that are not one for each vertex or triangle, or of the
-/// name of an attribute of OpenMesh's (`points`, `normals`); the mesh is as it was then.
+/// Stores each field in the property `v:NAME` on vertices or `f:NAME` on faces, such as `v:region`,
+/// `v:roi`, `v:distance` and `f:in_L`. It replaces properties with the same name.
+///
+/// The type is OpenMesh::Vec3d for three columns (`v:component_3`), int for integer fields whose
+/// values fit, and double otherwise. A face has the largest value of its triangles.
+///
+/// Throws std::invalid_argument, with the field's name, unless it has one or three columns (one for
+/// integers) and one row per vertex or triangle. The names of OpenMesh's own attributes (`points`,
+/// `normals`) are also refused. On errors the mesh is unchanged.
 template <OpenMeshClass Mesh>
 void set_fields(Mesh& mesh, const std::vector<Field>& fields);
 
-/// The property of that name on vertices or faces, of type bool, int, unsigned, float, double,
-/// Vec3f or Vec3d: masks, regions, weights, displacements. Values of faces are those of their
-/// triangles. The field's name is what follows `v:` or `f:`, where the property's begins so. Throws
-/// std::invalid_argument where there is none, or there are several.
+/// Field from the property `name` on vertices or faces: masks, regions, weights, displacements. Its
+/// type is bool, int, unsigned, float, double, Vec3f or Vec3d.
+///
+/// Triangles have the values of their faces. The field's name omits a prefix `v:` or `f:`. Throws
+/// std::invalid_argument unless there is exactly one such property.
 template <OpenMeshClass Mesh>
 Field field_from_openmesh(const Mesh& mesh, const std::string& name);
 
@@ -134,7 +142,7 @@ TextureCoordinates texture_of(const Mesh& mesh) {
   return texture;
 }
 
-/// Throws MismatchError where the halfedges differ from the mesh that they were made of.
+/// Throws MismatchError if the halfedges differ from the mesh they were made from.
 inline void check_held_by_halfedges(const Surface& surface) {
   const auto refuse = [](const std::string& what, const std::string& remedy) {
     throw MismatchError(what + ", which OpenMesh's halfedges cannot hold; " + remedy);
@@ -155,7 +163,7 @@ inline void check_held_by_halfedges(const Surface& surface) {
   }
 }
 
-/// Index of the texture coordinates that a polygon has at a vertex; -1 for none.
+/// Index of a polygon's texture coordinates at a vertex; -1 if it has none.
 inline int texture_at(const Connectivity& connectivity, int polygon, VertexIndex vertex) {
   const Polygons& polygons = connectivity.polygons;
   if (connectivity.texture.corners.empty()) return -1;
@@ -166,8 +174,8 @@ inline int texture_at(const Connectivity& connectivity, int polygon, VertexIndex
   return connectivity.texture.corners[static_cast<std::size_t>(corner - polygons.corners.begin())];
 }
 
-/// Also sets texture coordinates that the class has and the mesh does not: OpenMesh leaves them
-/// undefined.
+/// Writes the texture coordinates. If the mesh has none but the class does, they are set to 0,
+/// because OpenMesh leaves them undefined.
 template <OpenMeshClass Mesh>
 void write_texture(Mesh& mesh, const Connectivity& connectivity) {
   const std::vector<Eigen::Vector2d>& coordinates = connectivity.texture.coordinates;
@@ -195,7 +203,7 @@ void write_texture(Mesh& mesh, const Connectivity& connectivity) {
   }
 }
 
-/// Numbers of a property of this type, a row for each element; none where there is no such one.
+/// Reads a property of this type, one row per element. Returns false if there is none.
 template <typename Type, typename Handle, OpenMeshClass Mesh>
 bool read_property(const Mesh& mesh, const std::string& name, Eigen::MatrixXd& values) {
   typename OpenMesh::PropHandle<Handle>::template type<Type> property;
@@ -218,13 +226,13 @@ bool read_property(const Mesh& mesh, const std::string& name, Eigen::MatrixXd& v
   return true;
 }
 
-/// How many properties there are of these types; the numbers of one of them.
+/// Number of properties of these types; `values` receives the values of one of them.
 template <typename Handle, typename... Types, OpenMeshClass Mesh>
 int read_properties(const Mesh& mesh, const std::string& name, Eigen::MatrixXd& values) {
   return (int{read_property<Types, Handle>(mesh, name, values)} + ...);
 }
 
-/// How many such properties there are; the values of one of them.
+/// Number of supported properties with this name; `field` receives one of them.
 template <typename Handle, OpenMeshClass Mesh>
 int read_field(const Mesh& mesh, const std::string& name, Field& field) {
   using Vec3f = OpenMesh::Vec3f;
@@ -235,7 +243,7 @@ int read_field(const Mesh& mesh, const std::string& name, Field& field) {
   return integers + others;
 }
 
-/// Removes properties of that name of another type.
+/// Removes properties with this name and a type other than `Kept`.
 template <typename Kept, typename Handle, typename... Types, OpenMeshClass Mesh>
 void remove_others(Mesh& mesh, const std::string& name) {
   const auto remove = [&mesh, &name](auto property) {
@@ -321,7 +329,7 @@ Mesh to_openmesh(const TriMesh& mesh) {
   Mesh result;
   result.assign_connectivity(surface.half_edges());
   for (const auto face : result.faces()) {
-    // As after add_face(), which lets it point to the first corner.
+    // As after add_face(), which makes the halfedge point to the first corner.
     result.set_halfedge_handle(face, result.prev_halfedge_handle(face.halfedge()));
   }
   set_positions(result, mesh.positions);

@@ -9,20 +9,20 @@
 #include <type_traits>
 #include <vector>
 
-/// Options of algorithms, declared once: a struct of options lists the members that its users set,
-/// each with the values it takes. The algorithm checks them by that list, and parameters of
-/// commands and dialogs take default, range and unit from it.
+/// Declaration of algorithm options. A struct of options lists the members that users can set, with
+/// the range of each. Algorithms check values against this list; parameters of commands and dialogs
+/// take default, range and unit from it.
 namespace mimetra {
 
-/// An enum that counts from 0, with `choice_name` beside it: the name of each value, and an empty
-/// one for any other number. It is a switch without a default, so that the compiler names a value
-/// without a name.
+/// An enum that counts from 0 and has a function `choice_name`. It returns the name of each value
+/// and an empty name for other numbers. It must be a switch without a default, so that the compiler
+/// reports values without a name.
 template <typename Enum>
 concept NamedChoice = std::is_enum_v<Enum> && requires(Enum value) {
   { choice_name(value) } -> std::same_as<std::string_view>;
 };
 
-/// Every value, in the order of the enum.
+/// All values, in the order of the enum.
 template <NamedChoice Enum>
 std::vector<Enum> choices() {
   std::vector<Enum> values;
@@ -32,7 +32,6 @@ std::vector<Enum> choices() {
   return values;
 }
 
-/// Their names.
 template <NamedChoice Enum>
 std::vector<std::string> choice_names() {
   std::vector<std::string> names;
@@ -40,7 +39,7 @@ std::vector<std::string> choice_names() {
   return names;
 }
 
-/// The value of a name; none where no value has it.
+/// Value with this name, if any.
 template <NamedChoice Enum>
 std::optional<Enum> choice_of(std::string_view name) {
   for (const Enum value : choices<Enum>()) {
@@ -49,33 +48,33 @@ std::optional<Enum> choice_of(std::string_view name) {
   return {};
 }
 
-/// A length that may depend on the mesh: a share of its diameter, up to kLargestShare, or in the
-/// unit of its file.
+/// A length, either in the unit of the mesh's file or as a share of the mesh's diameter, at most
+/// kLargestShare.
 struct Length {
   double value = 0;  ///< >= 0
   bool absolute = false;
 
-  /// A share that is larger is a length whose unit was forgotten.
+  /// A larger share is probably a length without its unit.
   static constexpr double kLargestShare = 1;
 
   static constexpr Length share(double of_diameter) { return {of_diameter, false}; }
   static constexpr Length of(double length) { return {length, true}; }
 
-  /// In the unit of a mesh of this diameter().
+  /// Length in the unit of a mesh with this diameter().
   constexpr double in(double diameter) const { return absolute ? value : value * diameter; }
 };
 
-/// The numbers that an option takes, both ends included; open where there is no end.
+/// Closed range of numbers; a missing end is unbounded.
 struct Range {
   std::optional<double> minimum = {};
   std::optional<double> maximum = {};
 
-  /// False for what is not finite.
+  /// Whether the range contains `number`; false if it is not finite.
   bool holds(double number) const;
 };
 
-/// A member of a struct of options: its name, its range (for a Length that of its number, share or
-/// absolute) and its unit. The default is what the struct holds when it is made.
+/// A member of a struct of options: its name, range and unit. The range of a Length applies to its
+/// number, whether it is a share or absolute. The default is the value in a new struct.
 template <typename Options, typename Value>
 struct Option {
   constexpr Option(std::string_view own_name, Value Options::*own_member, Range own_range = {},
@@ -88,15 +87,15 @@ struct Option {
   std::string_view unit;
 };
 
-/// Throws std::invalid_argument that names the option and its range unless that holds the number.
+/// Throws std::invalid_argument, with the option's name and range, unless the range contains
+/// `number`.
 void check_number(std::string_view name, const Range& range, double number);
 
-/// The same for a length, which is not negative, and as a share no larger than
-/// Length::kLargestShare.
+/// Checks a length as check_number() does. A missing minimum counts as 0. For a share, a missing
+/// maximum counts as Length::kLargestShare.
 void check_length(std::string_view name, const Range& range, const Length& length);
 
-/// Throws std::invalid_argument for a number out of its range, and for an enum that has no such
-/// value.
+/// Throws std::invalid_argument for a number out of range, or for an undefined value of an enum.
 template <typename Value>
 void check_value(std::string_view name, const Range& range, const Value& value) {
   if constexpr (NamedChoice<Value>) {
@@ -125,7 +124,7 @@ void check_option(const Options& options, const Option<Options, Value>& option) 
   check_value(option.name, option.range, options.*option.member);
 }
 
-/// Checks the members that `Options::declared()`, a tuple of Option, lists.
+/// Checks all members that `Options::declared()`, a tuple of Option, lists.
 template <typename Options>
 void check_options(const Options& options) {
   std::apply(

@@ -13,14 +13,14 @@ namespace mimetra {
 
 namespace {
 
-/// What the threads of one loop share.
+/// State that the threads of one loop share.
 class Loop {
  public:
   Loop(int count, const std::function<void(int)>& work) : count_(count), work_(work) {}
 
-  /// Takes one index after the other; calls `after` with how many are done.
+  /// Takes one index after the other; calls `after` with the number of finished indices.
   void run(const std::function<void(int)>& after) {
-    // An index that was taken is worked on: none below the one that fails is left out.
+    // Every index taken is also worked on, so all indices below a failed one are finished.
     while (!stopped_) {
       const int i = next_++;
       if (i >= count_) return;
@@ -71,7 +71,7 @@ void parallel_for(int count, const std::function<void(int)>& work, const Context
     });
   }
   loop.rethrow();
-  // Others may have done the last ones, or all of them.
+  // Other threads may have finished the last indices, or all of them.
   if (reported < count) context.report(1);
 }
 

@@ -19,18 +19,18 @@ namespace {
 using Mesh = OpenMesh::TriMesh_ArrayKernelT<OpenMesh::DefaultTraitsDouble>;
 using Vector = Eigen::Vector3d;
 
-/// Cosine between a triangle and the surface at its corners, below which it folds; of a finished
-/// mesh only those that are turned over count.
+/// Cosine between a triangle and the surface at its corners below which a collapse folds it. Checks
+/// of the finished mesh count only triangles that are turned over.
 constexpr double kLeastCosine = 0.2;
-/// Of 4 sqrt(3) area over the sum of squared edges, 1 where all are equal.
+/// Least quality of a triangle, 4 sqrt(3) area / sum of squared edges; equilateral ones have 1.
 constexpr double kLeastQuality = 0.1;
-/// Weight of the planes that hold a border in its place.
+/// Weight of the planes that hold a border in place.
 constexpr double kBorder = 10;
-/// Of edges to the fourth, so that the shortest goes first where all is flat.
+/// Weight of the edge length to the fourth, so that flat parts lose their shortest edges first.
 constexpr double kShort = 1e-6;
 
-/// A vertex with more edges stays: OpenMesh tests each of them anew at every collapse beside it, so
-/// that time would grow with the cube of their number.
+/// Number of edges above which a vertex is locked. OpenMesh tests all of them again after every
+/// collapse next to the vertex, so the time would grow with the cube of their number.
 constexpr unsigned kMostEdges = 200;
 
 double quality(const Vector& a, const Vector& b, const Vector& c) {
@@ -38,7 +38,7 @@ double quality(const Vector& a, const Vector& b, const Vector& c) {
   return squares > 0 ? 2 * std::sqrt(3.0) * (b - a).cross(c - a).norm() / squares : 0;
 }
 
-/// The sum of squared distances to planes, each weighed.
+/// Weighted sum of squared distances to planes.
 struct Quadric {
   Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
   Vector b = Vector::Zero();
@@ -83,7 +83,7 @@ std::vector<Quadric> quadrics_of(const Positions& pose, const Surface& surface) 
   return quadrics;
 }
 
-/// The module of OpenMesh's decimater that ranks collapses.
+/// Module of OpenMesh's decimater that ranks collapses.
 template <typename MeshT>
 class PoseModule : public OpenMesh::Decimater::ModBaseT<MeshT> {
  public:
@@ -117,7 +117,7 @@ class PoseModule : public OpenMesh::Decimater::ModBaseT<MeshT> {
       best_ = std::numeric_limits<float>::max();
     }
     const float cost = cost_of(from, to);
-    // The decimater takes a vertex's cheapest: whether a dearer one is allowed does not matter.
+    // The decimater takes a vertex's cheapest collapse, so costlier ones need no check.
     if (cost >= best_ || !is_allowed(collapse)) return float(Base::ILLEGAL_COLLAPSE);
     best_ = cost;
     return cost;
@@ -145,7 +145,7 @@ class PoseModule : public OpenMesh::Decimater::ModBaseT<MeshT> {
     return static_cast<float>(std::max(0.0, cost));
   }
 
-  /// Whether every triangle that stays around `from` may have its corner at `to`.
+  /// Whether every triangle that stays around `from` may move its corner to `to`.
   bool is_allowed(const CollapseInfo& collapse) {
     MeshT& mesh = Base::mesh();
     const auto from = std::size_t(collapse.v0.idx()), to = std::size_t(collapse.v1.idx());
@@ -177,11 +177,11 @@ class PoseModule : public OpenMesh::Decimater::ModBaseT<MeshT> {
     return now >= kLeastQuality || now > quality(at_rest(from), at_rest(b), at_rest(c));
   }
 
-  // Of each vertex one pose after the other, so that they lie together in memory.
+  // The poses of a vertex are adjacent in memory.
   std::size_t poses_ = 0, planes_ = 0;
   std::vector<Vector> positions_, normals_;
   std::vector<Quadric> quadrics_;
-  // Whose collapses are asked for, one after the other, and the cheapest of them so far.
+  // Vertex whose collapses are being ranked, and the least cost so far.
   OpenMesh::VertexHandle ranked_;
   float best_ = 0;
 };
@@ -216,8 +216,8 @@ double agreement(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen
 CollapsedSurface collapsed(const Surface& surface, const DecimationPoses& poses,
                            const std::vector<bool>& locked, std::size_t collapses,
                            const Context& context) {
-  // OpenMesh 9 mixes up properties if it copies a status, and TriConnectivity's own function would
-  // triangulate deleted faces. Points are not needed: the poses have them.
+  // OpenMesh 9 mixes up properties when it copies a status, and TriConnectivity's own function
+  // would triangulate deleted faces. Points are not needed, because `poses` has them.
   Surface::HalfEdges half_edges = surface.half_edges();
   half_edges.release_face_status();
   Mesh mesh;

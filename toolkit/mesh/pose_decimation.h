@@ -5,33 +5,33 @@
 #include "toolkit/mesh/context.h"
 #include "toolkit/mesh/surface.h"
 
-/// Half-edge collapses that look at several poses of a surface. Internal to simplification.h.
+/// Half-edge collapses that consider several poses of a surface. Internal to simplification.h.
 namespace mimetra {
 
-/// What a collapse is weighed and refused by, on the vertices of a surface.
+/// Poses of a surface that decide the cost of collapses and whether they are allowed.
 struct DecimationPoses {
-  /// The first `planes` of them count, all are looked at for folds. The first is the rest pose.
-  /// The mesh's size is about 1.
+  /// One row per vertex of the surface, in units of about the mesh's size. Pose 0 is the rest pose.
+  /// The first `planes` poses contribute to the cost; all are checked for folds.
   std::vector<Positions> positions, normals;
   int planes = 0;
 
   void add(Positions pose, const Triangles& triangles);
 };
 
-/// How far a triangle of these places agrees with the surface at its corners, whose normals are
-/// added up: a cosine, negative where it is turned over; -1 for one without area.
+/// Cosine between a triangle's normal and the sum of the surface's normals at its corners. Negative
+/// if the triangle is turned over; -1 if it has no area.
 double agreement(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                  const Eigen::Vector3d& normals);
 
-/// The surface after collapses: its triangles, by that of the surface which each was.
+/// Surface after collapses.
 struct CollapsedSurface {
-  std::vector<bool> kept;      ///< vertices of the surface
-  std::vector<int> triangles;  ///< of the surface that are left, ascending
-  Triangles corners;           ///< of these, in the surface's vertices
+  std::vector<bool> kept;      ///< whether each vertex of the surface remains
+  std::vector<int> triangles;  ///< numbers of the remaining triangles, ascending
+  Triangles corners;           ///< their corners, as vertices of the surface
 };
 
-/// After so many collapses, or as many as there can be; `locked` vertices stay. All of these are
-/// vertices of the surface's half-edges. Throws Cancelled.
+/// Performs up to `collapses` collapses, or fewer if no more are allowed. `locked` vertices stay.
+/// All arguments refer to vertices of the surface's half-edges. Throws Cancelled.
 CollapsedSurface collapsed(const Surface& surface, const DecimationPoses& poses,
                            const std::vector<bool>& locked, std::size_t collapses,
                            const Context& context);

@@ -17,7 +17,7 @@ namespace {
 constexpr int kFrames = 128;
 constexpr std::size_t kVertices = 1000;
 
-/// Up to so many of 0 .. count - 1, at even distances.
+/// At most `most` of the numbers 0 .. count - 1, evenly spaced.
 std::vector<int> spread_out(int count, int most) {
   const int taken = std::min(count, most);
   std::vector<int> chosen(static_cast<std::size_t>(taken));
@@ -36,7 +36,7 @@ std::vector<VertexIndex> looked_at(const FrameSource& sequence) {
   return chosen;
 }
 
-/// What moves, turns and scales a pose (x, y, z of each vertex) by little: seven rows.
+/// Small translations, rotations and scaling of a pose (x, y, z of each vertex), as seven rows.
 FrameRows whole_ways(const Eigen::RowVectorXd& pose) {
   const PositionsView positions(pose.data(), pose.size() / 3, 3);
   const Positions from_center = positions.rowwise() - positions.colwise().mean();
@@ -53,10 +53,10 @@ FrameRows whole_ways(const Eigen::RowVectorXd& pose) {
   return ways;
 }
 
-/// Orthonormal rows that span those of `rows`.
+/// Orthonormal basis, as rows, of the space that `rows` span.
 FrameRows spanned_by(const FrameRows& rows) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(rows * rows.transpose());
-  // Below that, directions are rounding.
+  // Directions with a smaller share of the energy are rounding.
   constexpr double kRounding = 1e-10;
   const Eigen::VectorXd& energies = solver.eigenvalues();
   const Eigen::Index last = energies.size() - 1;
@@ -67,7 +67,7 @@ FrameRows spanned_by(const FrameRows& rows) {
          solver.eigenvectors().rightCols(kept).transpose() * rows;
 }
 
-/// Poses, each a row of coordinates, without what mixtures of others give.
+/// Mixtures of poses, each a row of coordinates; gives the rest of other poses beyond them.
 class Mixtures {
  public:
   explicit Mixtures(const Eigen::Ref<const FrameRows>& poses) : mean_(poses.colwise().mean()) {
@@ -85,7 +85,7 @@ class Mixtures {
     return left - (left * of_whole_.transpose()) * of_whole_;
   }
 
-  /// Mean over the frames of squared distances from their mean.
+  /// Mean over the frames of the squared distance from their mean.
   double spread2() const { return spread2_; }
 
  private:
@@ -97,11 +97,11 @@ class Mixtures {
 }  // namespace
 
 bool RestBeyondFrames::is_of_other_face() const {
-  // Few frames show little of what a face does.
+  // With few frames, little of what a face does is known, so the limit rises.
   constexpr double kSeen = 0.0016, kTelling = 120, kNoise = 3, kEverywhere = 0.2;
   constexpr int kFew = 10;
   const double shown = std::min(1.0, frames / kTelling);
-  // An expression that is held all the time is far from the neutral, too, but not so far.
+  // A face that holds one expression is also far from its neutral, but less far.
   constexpr double kHeld = 4, kFar = 0.1;
   const bool may_be_held = of_rest > kHeld * spread && of_rest < kFar;
   return frames >= kFew && of_rest > kSeen / (shown * shown) && of_rest > kNoise * of_frames &&

@@ -6,12 +6,12 @@ namespace mimetra {
 
 namespace {
 
-/// The smallest caches of processors with AVX2: blocks that fit there fit everywhere.
+/// Smallest caches of processors with AVX2, so that blocks fit everywhere.
 constexpr std::ptrdiff_t kFirstLevel = 32 * 1024;
 constexpr std::ptrdiff_t kSecondLevel = 256 * 1024;
 constexpr std::ptrdiff_t kThirdLevel = 2 * 1024 * 1024;
 
-/// Before there are threads, which from here on only read the sizes.
+/// Sets the sizes before threads exist; later calls then only read them.
 [[maybe_unused]] const bool kFixedWhenLoaded = (fix_product_blocking(), true);
 
 }  // namespace

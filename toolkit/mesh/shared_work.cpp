@@ -14,7 +14,7 @@ std::span<double> numbers_of(Eigen::MatrixXd& matrix) {
   return {matrix.data(), static_cast<std::size_t>(matrix.size())};
 }
 
-/// Number of blocks, each of `numbers` numbers, that a process holds at once.
+/// Number of blocks, each of `numbers` numbers, that a process computes before they are shared.
 int dealt_blocks(Eigen::Index numbers) {
   constexpr std::size_t kBytes = std::size_t{64} << 20;
   const std::size_t block =
@@ -22,7 +22,7 @@ int dealt_blocks(Eigen::Index numbers) {
   return static_cast<int>(std::clamp<std::size_t>(kBytes / block, 2, 32));
 }
 
-/// Binary tree over all runs. This process computes some of the runs.
+/// Binary tree over all runs, including those of other processes.
 class RunTree {
  public:
   RunTree(int runs, const Ranks& ranks, const Context::Join& join)
@@ -34,8 +34,8 @@ class RunTree {
 
   const IndexRange& own() const { return own_; }
 
-  /// Takes the result of an own run, and joins it upwards until the other half is missing or
-  /// belongs to another process. Several threads may call it.
+  /// Adds the result of one of this process's runs. Joins it upwards until the other half is
+  /// missing or belongs to another process. Several threads may call it.
   void add(int run, Eigen::MatrixXd result) {
     std::unique_lock lock(mutex_);
     results_[run] = std::move(result);
@@ -44,7 +44,7 @@ class RunTree {
       const int left = run / (2 * half) * (2 * half), right = left + half;
       if (right >= runs()) continue;
       if (!is_own(left, half) || complete_[run == left ? right : left] != half) return;
-      // The thread that completes the second half joins both: no other thread touches them.
+      // The thread that completes the second half joins both; no other thread uses them.
       lock.unlock();
       join_own(left, right);
       lock.lock();
@@ -52,8 +52,8 @@ class RunTree {
     }
   }
 
-  /// Joins the nodes of several processes. Each process walks through them in the same order, so
-  /// two that wait for each other are always at the same node.
+  /// Joins nodes whose halves belong to several processes. All processes visit them in the same
+  /// order, so two that wait for each other are always at the same node.
   void join_processes() {
     for (int half = 1; half < runs(); half *= 2) {
       for (int left = 0; left + half < runs(); left += 2 * half) {
@@ -68,7 +68,7 @@ class RunTree {
   int runs() const { return static_cast<int>(results_.size()); }
   int owner(int run) const { return owner_of(run, ranks_.count(), runs()); }
 
-  /// Whether this process has all runs of a node.
+  /// Whether this process computes all runs of a node.
   bool is_own(int left, int half) const {
     return own_.holds({left, std::min(left + 2 * half, runs())});
   }
@@ -78,7 +78,7 @@ class RunTree {
     results_[right].resize(0, 0);
   }
 
-  /// A node belongs to the process that has its first run.
+  /// Joins two halves of a node. The node belongs to the process that has its first run.
   void join_processes(int left, int right) {
     const bool has_left = owner(left) == ranks_.rank(), has_right = owner(right) == ranks_.rank();
     if (has_left && !has_right) {
@@ -97,7 +97,7 @@ class RunTree {
   IndexRange own_;
   const Context::Join& join_;
   std::vector<Eigen::MatrixXd> results_;
-  /// Runs in the largest half that is complete, for each run that begins one.
+  /// Number of runs in the largest complete half that begins at each run.
   std::vector<int> complete_;
   std::mutex mutex_;
 };

@@ -13,10 +13,10 @@ namespace mimetra {
 
 namespace {
 
-/// Singular values of the covariance below this share of the largest one are 0.
+/// Singular values of the covariance below this share of the largest one count as 0.
 constexpr double kNoExtent = 1e-9;
 
-/// A mirrored fit is taken where it leaves less than this share of the proper one.
+/// A mirrored fit wins if its residual is below this share of the proper fit's.
 constexpr double kMirroredShare = 0.1;
 
 class CarriedFrames : public FrameSource {
@@ -47,7 +47,6 @@ void check_sizes(const Eigen::Ref<const Positions>& from, const Eigen::Ref<const
                               std::to_string(to.rows()) + ", expected the same number, not 0");
 }
 
-/// Points and their centre, which is taken off.
 struct Centered {
   explicit Centered(const Eigen::Ref<const Positions>& given)
       : center(given.colwise().mean()), positions(given.rowwise() - center) {}
@@ -62,7 +61,7 @@ Similarity between(Similarity fit, const Centered& from, const Centered& to) {
   return fit;
 }
 
-/// Of centred points: the rotation of a sign of the determinant, its scale and what it leaves.
+/// Fits between centred points, with or without mirroring, and their residuals.
 class CenteredFit {
  public:
   CenteredFit(const Positions& from, const Positions& to)
@@ -72,7 +71,8 @@ class CenteredFit {
                  Eigen::ComputeFullU | Eigen::ComputeFullV),
         is_proper_(factors_.matrixU().determinant() * factors_.matrixV().determinant() > 0) {}
 
-  /// Turning about the axis of the two smallest values changes nothing where they cancel.
+  /// Throws MismatchError if the two smallest singular values cancel. A rotation in their plane
+  /// would then change nothing.
   void check_unique() const {
     const Eigen::Vector3d values = factors_.singularValues();
     if (values[1] + (is_proper_ ? 1 : -1) * values[2] > kNoExtent * values[0]) return;

@@ -17,19 +17,19 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-/// Besides the rest pose: frames whose planes count, and those that are looked at for folds.
+/// Number of frames besides the rest pose: those whose planes count, and those checked for folds.
 constexpr int kPlanePoses = 5, kExtremePoses = 12;
-/// Vertices by which frames are compared.
+/// Approximate number of vertices used to compare frames.
 constexpr int kSamples = 500;
-/// Frames in which triangles fold are looked at in the next round.
+/// Number of rounds, and of frames with folds that join the poses after each round.
 constexpr int kRounds = 3, kFoldedPoses = 4;
 
-/// The surface that collapses work on, and its half-edges in tables.
+/// Surface on which the collapses work, with tables of its half-edges.
 struct Sheets {
   Surface surface;
-  /// The given vertex behind each of the surface's.
+  /// Given vertex of each of the surface's vertices.
   std::vector<VertexIndex> given;
-  /// Corners of each triangle, M x 3, in the surface's vertices; as given if it is left out.
+  /// Corners of each triangle (M x 3) as vertices of the surface; as given if it is left out.
   Triangles triangles;
 };
 
@@ -46,12 +46,12 @@ Sheets sheets_of(const Connectivity& mesh) {
   return sheets;
 }
 
-/// Charts of a texture: polygons that have the same coordinates at a vertex, and all that hang
-/// together so.
+/// Charts of a texture. Polygons with the same coordinates at a common vertex share a chart,
+/// directly or through others.
 struct TextureCharts {
-  /// Chart of each polygon; none without a texture.
+  /// Chart of each polygon; empty without a texture.
   std::vector<int> of_polygon;
-  /// Charts and coordinates at each vertex (N): one pair away from seams, several at them.
+  /// Pairs of chart and coordinates at each vertex (N): several at seams, otherwise one.
   std::vector<std::set<std::pair<int, int>>> of_vertex;
 };
 
@@ -95,7 +95,7 @@ TextureCharts charts_of(const Connectivity& mesh) {
   return charts;
 }
 
-/// Vertices of the input that must not go (N).
+/// Whether each vertex of the input must be kept (N).
 std::vector<bool> locked_vertices(const FrameSource& sequence, const Surface& surface,
                                   const TextureCharts& charts) {
   const auto count = static_cast<std::size_t>(sequence.vertices());
@@ -113,7 +113,7 @@ std::vector<bool> locked_vertices(const FrameSource& sequence, const Surface& su
   return locked;
 }
 
-/// A frame's vertices that stand for the surface's, times `scale`.
+/// Positions of the surface's vertices in a frame, relative to `middle` and times `scale`.
 Positions on_surface(const PositionsView& pose, const Sheets& sheets, const Vector& middle,
                      double scale) {
   Positions result = pose(sheets.given, Eigen::all);
@@ -121,8 +121,7 @@ Positions on_surface(const PositionsView& pose, const Sheets& sheets, const Vect
   return result * scale;
 }
 
-/// Frames that differ most from the rest pose and from each other, in the order in which they were
-/// found.
+/// Frames that differ most from the rest pose and from each other, most different first.
 std::vector<int> extreme_frames(const FrameSource& sequence, const Context& context) {
   std::vector<VertexIndex> sample;
   const int step = std::max(1, sequence.vertices() / kSamples);
@@ -151,10 +150,10 @@ std::vector<int> extreme_frames(const FrameSource& sequence, const Context& cont
   return frames;
 }
 
-/// Where triangles that collapses have made are turned over, and were not before.
+/// Triangles made by collapses that are turned over, unlike the given triangle they come from.
 struct Folds {
-  std::vector<int> in_frame;   ///< how many (F)
-  std::vector<bool> triangle;  ///< each of `corners`
+  std::vector<int> in_frame;   ///< number of such triangles in each frame (F)
+  std::vector<bool> triangle;  ///< whether each row of `corners` is such a triangle in some frame
 };
 
 Folds folds_of(const FrameSource& sequence, const Sheets& sheets, const CollapsedSurface& mesh,
@@ -187,7 +186,7 @@ Folds folds_of(const FrameSource& sequence, const Sheets& sheets, const Collapse
               return agreement(pose.row(c[0]), pose.row(c[1]), pose.row(c[2]), around) <= 0;
             };
             if (!is_turned(mesh.corners.row(i))) continue;
-            // The given triangle that it was may be so, too: an eyelid that closes.
+            // The given triangle may also be turned over, for example when an eyelid closes.
             if (is_turned(sheets.triangles.row(mesh.triangles[std::size_t(i)]))) continue;
             folded[static_cast<std::size_t>(first + row)].push_back(i);
           }
@@ -202,7 +201,7 @@ Folds folds_of(const FrameSource& sequence, const Sheets& sheets, const Collapse
   return folds;
 }
 
-/// Frames with the most folds, most first.
+/// Frames with the most folds, in descending order.
 std::vector<int> worst_frames(const std::vector<int>& folds) {
   std::vector<int> frames(folds.size());
   std::iota(frames.begin(), frames.end(), 0);
@@ -229,7 +228,7 @@ void keep_around(const Folds& folds, const CollapsedSurface& mesh, const Sheets&
   }
 }
 
-/// Makes the connectivity of what is left of a mesh.
+/// Builds the connectivity of the simplified mesh.
 class Remaining {
  public:
   Remaining(const Connectivity& mesh, const Sheets& sheets, const CollapsedSurface& left,
@@ -274,8 +273,8 @@ class Remaining {
     return mesh_.polygon_of_triangle[std::size_t(left_.triangles[i])];
   }
 
-  /// Coordinates of the vertex in the polygon's chart: its own where it is a corner; where the
-  /// chart has several there, those next to the polygon's.
+  /// Texture coordinates of a vertex in the polygon's chart: the polygon's own at its corners,
+  /// elsewhere those nearest to the middle of the polygon's coordinates.
   int texture_at(VertexIndex vertex, int polygon) const {
     const TextureCoordinates& texture = mesh_.texture;
     const auto p = static_cast<std::size_t>(polygon);
@@ -289,7 +288,7 @@ class Remaining {
       ++corners;
     }
     middle /= std::max(1, corners);
-    // Of the polygon's chart before others.
+    // Coordinates in the polygon's chart come before others.
     const auto distance = [&](const std::pair<int, int>& at) {
       const double apart =
           at.second < 0 ? HUGE_VAL
@@ -317,7 +316,7 @@ class Remaining {
     }
   }
 
-  /// Statements before faces that are gone stand before the next that is left.
+  /// Copies group statements; those of removed faces move to the next remaining face.
   void add_groups(Connectivity& made) const {
     std::size_t face = 0;
     for (const FaceGroup& group : mesh_.groups) {
@@ -329,7 +328,7 @@ class Remaining {
   const Connectivity& mesh_;
   const CollapsedSurface& left_;
   const TextureCharts& charts_;
-  Triangles corners_;  // of the triangles that are left, in given vertices, wound as given
+  Triangles corners_;  // corners of the remaining triangles as given vertices, wound as given
 };
 
 }  // namespace

@@ -24,12 +24,12 @@ Edge edge_of(VertexIndex a, VertexIndex b) {
   return std::minmax(a, b);
 }
 
-/// Triangles on representatives, and what lies around their edges.
+/// Triangles on representative vertices, with the neighbourhood of each edge and vertex.
 struct Surroundings {
   Surface surface;
-  /// Corners opposite to each edge that two triangles share.
+  /// Corners opposite to each edge that exactly two triangles share.
   std::map<Edge, std::array<VertexIndex, 2>> opposite;
-  /// Neighbours of each vertex that a border leads to, ascending.
+  /// Neighbours of each vertex along border edges, ascending.
   std::vector<std::vector<VertexIndex>> along_border;
 
   Surroundings(int vertices, const Triangles& triangles)
@@ -49,7 +49,7 @@ struct Surroundings {
   }
 };
 
-/// Rows of weights, one after the other.
+/// Rows of a weight matrix, appended one after the other.
 class WeightRows {
  public:
   using Row = std::vector<std::pair<VertexIndex, double>>;
@@ -70,19 +70,19 @@ class WeightRows {
   int rows_ = 0;
 };
 
-/// Weight of each of the neighbours of an inner vertex that has so many.
+/// Weight of each neighbour of an inner vertex that has `neighbors` neighbours.
 double loop_weight(std::size_t neighbors) {
   const auto n = static_cast<double>(neighbors);
   const double inner = 3.0 / 8 + std::cos(2 * std::numbers::pi / n) / 4;
   return (5.0 / 8 - inner * inner) / n;
 }
 
-/// Where a given vertex goes.
+/// Weights that give the new place of a given vertex.
 WeightRows::Row moved_vertex(VertexIndex vertex, const Surroundings& around,
                              SubdivisionScheme scheme) {
   const std::vector<VertexIndex> neighbors = around.surface.neighbors(vertex);
   const auto& border = around.along_border[static_cast<std::size_t>(vertex)];
-  // Where borders meet, and without a triangle, it stays.
+  // A vertex stays if borders meet there or if it has no triangle.
   if (scheme == SubdivisionScheme::midpoint || neighbors.empty() ||
       (!border.empty() && border.size() != 2)) {
     return {{vertex, 1}};
@@ -94,7 +94,7 @@ WeightRows::Row moved_vertex(VertexIndex vertex, const Surroundings& around,
   return row;
 }
 
-/// Where the new vertex of an edge lies.
+/// Weights that give the place of an edge's new vertex.
 WeightRows::Row middle_of(const Edge& edge, const Surroundings& around, SubdivisionScheme scheme) {
   const auto across = around.opposite.find(edge);
   if (scheme == SubdivisionScheme::midpoint || across == around.opposite.end()) {
@@ -106,12 +106,12 @@ WeightRows::Row middle_of(const Edge& edge, const Surroundings& around, Subdivis
           {across->second[1], 1.0 / 8}};
 }
 
-/// Numbers of things that are made when they are first asked for.
+/// Numbers edges in the order in which they are first requested.
 class EdgeNumbers {
  public:
   explicit EdgeNumbers(int first) : next_(first) {}
 
-  /// And whether it is new.
+  /// Returns the edge's number and whether it is new.
   std::pair<int, bool> operator()(int a, int b) {
     const auto [found, is_new] = number_.try_emplace(edge_of(a, b), next_);
     if (is_new) ++next_;
@@ -123,11 +123,11 @@ class EdgeNumbers {
   int next_;
 };
 
-/// The corners of the four triangles that take a triangle's place: its corners 0 to 2, and the
-/// middles 3 to 5 of the edges from each of them.
+/// Corners of the four triangles that replace a triangle. Its corners are 0 to 2, and the middle of
+/// the edge from corner c is 3 + c.
 constexpr int kFourTriangles[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
 
-/// Texture coordinates of the corners of each triangle (3M); empty where there are none.
+/// Indices of the texture coordinates at each triangle's corners (3M); empty without a texture.
 std::vector<int> texture_of_triangles(const Connectivity& mesh) {
   std::vector<int> corners;
   if (mesh.texture.coordinates.empty()) return corners;
@@ -211,7 +211,7 @@ Subdivision subdivided_once(const Positions& rest, const Connectivity& mesh,
   return {rows.matrix(mesh.vertices), std::make_shared<const Connectivity>(std::move(finer))};
 }
 
-/// Each vertex a sum of another source's.
+/// Frames whose vertices are weighted sums of another source's vertices.
 class SummedFrames : public FrameSource {
  public:
   SummedFrames(std::shared_ptr<const FrameSource> source, const Subdivision& subdivision)

@@ -10,13 +10,12 @@
 
 namespace mimetra {
 
-/// Where the vertices of finer triangles lie.
+/// Placement of the vertices of finer triangles.
 enum class SubdivisionScheme {
-  loop,     ///< on a smooth surface, to which the given vertices move, too
-  midpoint  ///< on the given triangles: the surface stays as it is
+  loop,     ///< on a smooth surface; the given vertices also move
+  midpoint  ///< on the given triangles, so that the surface does not change
 };
 
-/// As people choose it.
 constexpr std::string_view choice_name(SubdivisionScheme value) {
   switch (value) {
     case SubdivisionScheme::loop:
@@ -29,7 +28,7 @@ constexpr std::string_view choice_name(SubdivisionScheme value) {
 
 struct SubdivideOptions {
   SubdivisionScheme scheme = SubdivisionScheme::loop;
-  /// How often each triangle becomes four.
+  /// Number of times that each triangle is split into four.
   int times = 1;
 
   static constexpr Option kScheme{"scheme", &SubdivideOptions::scheme};
@@ -37,24 +36,25 @@ struct SubdivideOptions {
   static constexpr auto declared() { return std::tuple(kScheme, kTimes); }
 };
 
-/// Finer triangles, whose vertices are the given ones and behind them the middles of edges.
+/// Finer triangles. Their vertices are the given ones, followed by the middles of edges.
 struct Subdivision {
-  /// Each vertex is a sum of given ones (N' x N); rows add up to 1.
+  /// Weights of the given vertices in each new vertex (N' x N); rows add up to 1.
   Eigen::SparseMatrix<double, Eigen::RowMajor> weights;
   /// Four triangles for each given one, with its texture coordinates, groups and materials.
   std::shared_ptr<const Connectivity> connectivity;
 };
 
-/// Vertices at one place of `rest` (N x 3) are one, so that texture seams do not open. An edge that
-/// not exactly two triangles share is a border. Throws std::invalid_argument for options out of
-/// range, and where the vertices of a finer mesh could not be counted in an int.
+/// Subdivides the triangles of a mesh. Vertices that coincide in `rest` (N x 3) count as one, so
+/// that texture seams do not open. Edges not shared by exactly two triangles are borders. Throws
+/// std::invalid_argument for options out of range, or if the finer mesh would exceed the range of
+/// int indices.
 ///
 /// [Loop. Smooth subdivision surfaces based on triangles. 1987]
 Subdivision subdivide(const Positions& rest, const Connectivity& connectivity,
                       const SubdivideOptions& options = {});
 
-/// The frames and the rest pose of a sequence on the finer mesh, made when they are read. Throws
-/// std::invalid_argument for one of another number of vertices.
+/// Frames and rest pose of a sequence on the finer mesh; frames are computed on reading. Throws
+/// std::invalid_argument if the number of vertices differs.
 std::shared_ptr<const FrameSource> subdivided(std::shared_ptr<const FrameSource> source,
                                               const Subdivision& subdivision);
 

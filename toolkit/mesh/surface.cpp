@@ -26,7 +26,7 @@ void check_indices(int vertices, std::span<const VertexIndex> corners,
                               std::to_string(vertices - 1));
 }
 
-/// Faces that have a vertex twice, ascending; none where they are kept.
+/// Faces that repeat a vertex, ascending; empty if collapsed faces are kept.
 std::vector<int> left_out_of(std::span<const VertexIndex> corners, const std::vector<int>& offsets,
                              Collapsed collapsed) {
   std::vector<int> faces;
@@ -40,7 +40,7 @@ std::vector<int> left_out_of(std::span<const VertexIndex> corners, const std::ve
   return faces;
 }
 
-/// The corners of faces, face after face. Corner c is also the side from it to the next corner.
+/// Corners of faces, face after face. Corner c also denotes the side from it to the next corner.
 class Corners {
  public:
   Corners(std::vector<VertexIndex> vertex, std::vector<int> offsets)
@@ -59,11 +59,11 @@ class Corners {
   int next(int c) const { return c + 1 < first(face(c) + 1) ? c + 1 : first(face(c)); }
   int previous(int c) const { return c > first(face(c)) ? c - 1 : first(face(c) + 1) - 1; }
 
-  /// Lets the face run the other way round, from the same first corner.
+  /// Reverses the winding of a face, keeping its first corner.
   void turn(int face) {
     std::reverse(vertex_.begin() + first(face) + 1, vertex_.begin() + first(face + 1));
   }
-  /// What side `c` is called once its face is turned.
+  /// Number of side `c` after its face is turned.
   int turned(int c) const { return first(face(c)) + first(face(c) + 1) - 1 - c; }
 
  private:
@@ -73,7 +73,7 @@ class Corners {
   std::vector<int> offsets_, face_;
 };
 
-/// The other side of each edge that exactly two faces share; -1 elsewhere.
+/// Opposite side of each side whose edge exactly two faces share; -1 for other sides.
 std::vector<int> twins_of(const EdgeSides& edges, int sides) {
   std::vector<int> twin(static_cast<std::size_t>(sides), -1);
   edges.for_each_edge([&twin](std::span<const int> sides_of_edge) {
@@ -85,8 +85,8 @@ std::vector<int> twins_of(const EdgeSides& edges, int sides) {
   return twin;
 }
 
-/// Which faces must be turned so that neighbours run the same way round; the lowest of those that
-/// hang together stays as it is.
+/// Faces that must be turned so that neighbours are wound the same way. The lowest face of each
+/// connected set is not turned.
 std::vector<int> faces_to_turn(const Corners& corners, const std::vector<int>& twin) {
   const auto faces = static_cast<std::size_t>(corners.faces());
   std::vector<bool> is_turned(faces, false), seen(faces, false);
@@ -95,7 +95,7 @@ std::vector<int> faces_to_turn(const Corners& corners, const std::vector<int>& t
     if (seen[static_cast<std::size_t>(seed)]) continue;
     seen[static_cast<std::size_t>(seed)] = true;
     open.assign(1, seed);
-    // Nearest first, so that the seam of a one-sided surface is short.
+    // Breadth first, so that the seam of a one-sided surface is short.
     for (std::size_t next = 0; next < open.size(); ++next) {
       const int face = open[next];
       for (int c = corners.first(face); c < corners.first(face + 1); ++c) {
@@ -117,8 +117,8 @@ std::vector<int> faces_to_turn(const Corners& corners, const std::vector<int>& t
   return turned;
 }
 
-/// Turns faces and renames the sides in `twin`; twins that still run the same way close a one-sided
-/// surface and are parted.
+/// Turns faces and renumbers the sides in `twin`. Twins that still run the same way would close a
+/// one-sided surface and are separated.
 void orient(Corners& corners, const std::vector<int>& turned, std::vector<int>& twin) {
   std::vector<bool> is_turned(static_cast<std::size_t>(corners.faces()), false);
   for (const int face : turned) {
@@ -138,7 +138,7 @@ void orient(Corners& corners, const std::vector<int>& turned, std::vector<int>& 
   twin = std::move(oriented);
 }
 
-/// The lowest corner that is the same vertex of the surface, for each corner.
+/// For each corner, the lowest corner at the same vertex of the surface.
 std::vector<int> joined_corners(const Corners& corners, const std::vector<int>& twin) {
   DisjointSets sets(corners.count());
   for (int c = 0; c < corners.count(); ++c) {
@@ -152,13 +152,14 @@ std::vector<int> joined_corners(const Corners& corners, const std::vector<int>& 
   return lowest;
 }
 
-/// Vertices of the surface.
+/// Vertices of the surface, including copies.
 struct Copies {
   std::vector<int> of_corner;       ///< vertex of the surface at each corner
-  std::vector<VertexIndex> copied;  ///< the given vertex of each behind the given ones
+  std::vector<VertexIndex> copied;  ///< given vertex of each copy
 };
 
-/// The lowest corner of each given vertex keeps its number; its others are copies.
+/// Numbers the surface's vertices: the first at each given vertex keeps its number, further ones
+/// are copies.
 Copies numbered(int vertices, const Corners& corners, const std::vector<int>& lowest,
                 const std::vector<int>& left_out) {
   std::vector<bool> is_out(static_cast<std::size_t>(corners.faces()), false);
@@ -192,7 +193,7 @@ Copies numbered(int vertices, const Corners& corners, const std::vector<int>& lo
 using VertexHandle = OpenMesh::VertexHandle;
 using HalfedgeHandle = OpenMesh::HalfedgeHandle;
 
-/// OpenMesh's kernel is filled item by item, since add_face() refuses two edges between the same
+/// Fills OpenMesh's kernel item by item, because add_face() refuses two edges between the same
 /// vertices.
 class HalfEdgeBuilder {
  public:
@@ -243,20 +244,20 @@ class HalfEdgeBuilder {
     }
   }
 
-  /// Links the half-edge beyond side `c`, which has no face, to the next one along the border.
+  /// Links the half-edge opposite to side `c`, which has no face, to the next one along the border.
   void close_border(int c) {
-    // Turn about the vertex where the side starts until the other border of its fan.
+    // Turn about the vertex where the side starts, up to the other border of its fan.
     int last = corners_.previous(c);
     while (twin(last) >= 0) last = corners_.previous(twin(last));
     const HalfedgeHandle border = mesh_.opposite_halfedge_handle(handle(last));
     mesh_.set_next_halfedge_handle(mesh_.opposite_halfedge_handle(handle(c)), border);
-    // OpenMesh knows a border vertex by the half-edge that leaves it along the border.
+    // OpenMesh expects a border vertex to refer to its outgoing half-edge along the border.
     mesh_.set_halfedge_handle(vertex(c), border);
   }
 
   const Corners& corners_;
   const std::vector<int>& twin_;
-  const std::vector<int>& vertex_;  // -1 in faces that are left out
+  const std::vector<int>& vertex_;  // -1 in left-out faces
   Surface::HalfEdges& mesh_;
   std::vector<HalfedgeHandle> handle_;
 };
@@ -284,7 +285,7 @@ EdgeSides::EdgeSides(int vertices, const Polygons& polygons, Collapsed collapsed
 EdgeSides::EdgeSides(int vertices, std::span<const VertexIndex> corners,
                      const std::vector<int>& offsets, const std::vector<int>& left_out) {
   check_indices(vertices, corners, offsets);
-  // Sides by their lower vertex, counted and then filled in.
+  // Counting sort of the sides by their lower vertex.
   struct Side {
     VertexIndex high;
     int corner;

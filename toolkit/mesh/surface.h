@@ -10,23 +10,24 @@
 
 namespace mimetra {
 
-/// Faces that have a vertex twice.
+/// Treatment of faces that repeat a vertex.
 enum class Collapsed { left_out, kept };
 
-/// The sides of a mesh's faces, by their edges. Corners are counted face after face, so that number
-/// c of triangle t is 3 t + c; a side is named by the corner that it starts from, and ends at the
-/// face's next one.
+/// Sides of a mesh's faces, grouped by edge.
+///
+/// Corners are counted face after face, so that corner c of triangle t has number 3 t + c. A side
+/// has the number of the corner where it starts; it ends at the face's next corner.
 class EdgeSides {
  public:
-  /// Collapsed faces that are kept have sides but for those from a vertex to itself.
+  /// If collapsed faces are kept, they have all sides except those from a vertex to itself.
   ///
-  /// Throws std::invalid_argument that names the first face with a vertex outside 0 ..
-  /// `vertices` - 1. \pre offsets of polygons are those of Connectivity::from_polygons()
+  /// Throws std::invalid_argument if a vertex is outside 0 .. `vertices` - 1; the message names the
+  /// first such face. \pre offsets of polygons are as in Connectivity::from_polygons()
   EdgeSides(int vertices, const Triangles& triangles, Collapsed collapsed = Collapsed::left_out);
   EdgeSides(int vertices, const Polygons& polygons, Collapsed collapsed = Collapsed::left_out);
 
-  /// Calls `visit` for each edge, by its lower, then by its higher vertex, with all its sides: a
-  /// std::span<const int>, ascending.
+  /// Calls `visit` for each edge with all its sides, a std::span<const int> in ascending order.
+  /// Edges are sorted by their lower vertex, then by their higher vertex.
   template <typename Visit>
   void for_each_edge(Visit visit) const {
     for (std::size_t e = 0; e + 1 < first_of_edge_.size(); ++e) {
@@ -41,19 +42,19 @@ class EdgeSides {
   EdgeSides(int vertices, std::span<const VertexIndex> corners, const std::vector<int>& offsets,
             const std::vector<int>& left_out);
 
-  std::vector<int> sides_;          // edge by edge
-  std::vector<int> first_of_edge_;  // and the end
+  std::vector<int> sides_;          // grouped by edge
+  std::vector<int> first_of_edge_;  // index of each edge's first side, and the end
 };
 
-/// The connectivity of any mesh as OpenMesh half-edges, to walk along.
+/// Connectivity of any mesh as OpenMesh half-edges.
 ///
-/// Half-edges hold oriented manifolds only. Faces are neighbours where exactly two share an edge;
-/// one that is wound against its neighbours is turned. Elsewhere the surface is open: at edges of
-/// three and more faces, along the seam of a Moebius strip, and where sheets touch in a vertex.
-/// Such a vertex has a copy for each sheet, so that every vertex of the half-edges has one fan of
-/// faces.
+/// Half-edges represent only oriented manifolds. Faces are neighbours if exactly two share an edge;
+/// a face that is wound against its neighbours is turned. The surface is open at edges of three or
+/// more faces and along the seam of a Moebius strip. It is also open where sheets touch in a
+/// vertex. Such a vertex has a copy for each further sheet, so that each vertex of the half-edges
+/// has one fan of faces.
 ///
-/// Vertices and faces keep their numbers; copies follow behind the given vertices.
+/// Vertices and faces keep their numbers; copies follow the given vertices.
 class Surface {
  public:
   using HalfEdges = OpenMesh::PolyConnectivity;
@@ -61,29 +62,29 @@ class Surface {
   /// Throws std::invalid_argument as EdgeSides.
   Surface(int vertices, const Triangles& triangles);
   Surface(int vertices, const Polygons& polygons);
-  /// On the vertices that stand for welded ones; the others have no faces.
+  /// Uses the representatives of welded vertices; the other vertices have no faces.
   Surface(const Triangles& triangles, const Weld& weld);
 
-  /// Faces that are left out are marked as deleted, so that faces() passes over them. The half-edge
-  /// of a face leads from its first corner.
+  /// Half-edges of the surface. Left-out faces are marked as deleted, so that faces() skips them.
+  /// The half-edge of a face starts at its first corner.
   const HalfEdges& half_edges() const { return half_edges_; }
 
-  /// Vertices as given (N).
+  /// Number of given vertices (N), without copies.
   int vertices() const { return vertices_; }
-  /// The given vertex behind one of the half-edges' vertices.
+  /// Given vertex of a vertex of the half-edges.
   VertexIndex vertex_of(OpenMesh::VertexHandle vertex) const;
-  /// Those that stand for a given vertex, itself first: one unless sheets touch there.
+  /// Vertices of the half-edges for a given vertex, itself first; one unless sheets touch there.
   std::vector<OpenMesh::VertexHandle> copies_of(VertexIndex vertex) const;
-  /// How many copies follow behind the given vertices.
+  /// Number of copies after the given vertices.
   int copies() const { return static_cast<int>(copied_.size()); }
 
-  /// Faces that have a vertex twice, ascending.
+  /// Faces that repeat a vertex, ascending.
   const std::vector<int>& left_out() const { return left_out_; }
-  /// Faces that run the other way round than given, ascending; the lowest face of those that are
-  /// neighbours never does.
+  /// Faces that are turned against their given winding, ascending. Of faces connected through
+  /// neighbours, the lowest is never turned.
   const std::vector<int>& turned() const { return turned_; }
 
-  /// Given vertices that an edge joins with a vertex, ascending.
+  /// Given vertices that share an edge with `vertex`, ascending.
   std::vector<VertexIndex> neighbors(VertexIndex vertex) const;
 
  private:
@@ -91,21 +92,21 @@ class Surface {
 
   int vertices_;
   HalfEdges half_edges_;
-  std::vector<VertexIndex> copied_;  // the given vertex of each copy, ascending
+  std::vector<VertexIndex> copied_;  // given vertex of each copy, ascending
   std::vector<int> left_out_, turned_;
 };
 
-/// Vertices that edges lead to within `reach` (length) of the nearest of `from`, and how far.
-/// `positions` N x 3. An edge on the way is no farther from the surface's own distance than its
-/// triangles are long.
+/// Vertices within `reach` (length) along edges of the nearest vertex of `from`, with their
+/// distances. `positions` is N x 3. Distances along edges are upper bounds of distances on the
+/// surface.
 std::map<VertexIndex, double> within_reach(const Surface& surface, const Positions& positions,
                                            double reach, const std::vector<VertexIndex>& from);
 
-/// Length of the longest edge of a vertex; 0 without any.
+/// Length of a vertex's longest edge; 0 without edges.
 double longest_edge(const Surface& surface, const Positions& positions, VertexIndex vertex);
 
-/// Parts that hang together by vertices of faces: labels 0, 1, ... in the order of each one's
-/// lowest vertex. A vertex without face is a part of its own.
+/// Parts that are connected through vertices of faces. Labels 0, 1, ... follow the lowest vertex of
+/// each part. A vertex without a face is a part of its own.
 struct ConnectedComponents {
   int count = 0;
   std::vector<int> of_vertex;
@@ -113,7 +114,7 @@ struct ConnectedComponents {
 
 /// Throws std::invalid_argument as EdgeSides.
 ConnectedComponents connected_components(int vertices, const Triangles& triangles);
-/// The same where welded vertices are one.
+/// Components after welding: welded vertices count as one.
 ConnectedComponents connected_components(const Triangles& triangles, const Weld& weld);
 
 }  // namespace mimetra

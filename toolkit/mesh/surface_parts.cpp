@@ -17,7 +17,7 @@ namespace {
 
 using RimEdge = std::pair<VertexIndex, VertexIndex>;
 
-/// Edges of one triangle, by their lower vertex first.
+/// Edges with one triangle, each with its lower vertex first.
 std::vector<RimEdge> boundary_edges(int vertices, const Triangles& welded) {
   std::vector<RimEdge> edges;
   EdgeSides(vertices, welded).for_each_edge([&](std::span<const int> sides) {
@@ -33,7 +33,7 @@ struct Boundary {
   double length = 0;
 };
 
-/// Boundaries by their lowest vertex.
+/// Boundaries, keyed by their lowest vertex.
 std::map<VertexIndex, Boundary> boundaries_of(const Positions& positions,
                                               const std::vector<RimEdge>& edges) {
   DisjointSets joined(static_cast<int>(positions.rows()));
@@ -51,7 +51,6 @@ std::map<VertexIndex, Boundary> boundaries_of(const Positions& positions,
   return boundaries;
 }
 
-/// The diameter of each connected part.
 std::vector<double> diameters_of(const Positions& positions, const SurfaceParts& parts) {
   std::vector<std::vector<Eigen::Index>> members(parts.count());
   for (std::size_t v = 0; v < parts.of_vertex.size(); ++v) {

@@ -6,47 +6,47 @@
 
 namespace mimetra {
 
-/// A mesh's connected parts, the largest surface first; of equal ones that with the lowest vertex.
-/// A vertex without triangle is a part without area.
+/// Connected parts of a mesh in descending order of area; equal areas are ordered by lowest vertex.
+/// A vertex without a triangle is a part without area.
 struct SurfaceParts {
   std::vector<int> of_vertex;  ///< part of each vertex (N)
-  std::vector<double> areas;   ///< of each part, descending, in the positions' unit squared
+  std::vector<double> areas;   ///< area of each part, descending, in the positions' unit squared
 
   int count() const { return static_cast<int>(areas.size()); }
   double area() const;
-  /// Share of the whole surface; 0 where that has no area.
+  /// Share of the part in the total area; 0 if the total area is 0.
   double share(int part) const;
 };
 
-/// Parts of the surface whose vertices are welded: UV seams do not cut it. Throws
-/// std::invalid_argument for a triangle with a vertex that is not there, or where sizes differ.
+/// Parts of the surface after welding, so that UV seams do not cut it. Throws std::invalid_argument
+/// if a triangle has a bad vertex index or sizes differ.
 SurfaceParts surface_parts(const Positions& positions, const Triangles& triangles,
                            const Weld& weld);
-/// The same with the vertices at one place welded.
+/// Parts of the surface with coinciding vertices welded.
 SurfaceParts surface_parts(const Positions& positions, const Triangles& triangles);
 
-/// What a computation is about, by which it measures lengths.
+/// Vertices that a computation is about; they define the scale of its lengths.
 struct Subject {
   std::vector<VertexIndex> vertices;
-  /// True if the given vertices span less than a third of the parts that they are in, as on a head
-  /// and body in one piece. The subject is then these vertices, and lengths grow by half.
+  /// Whether the given vertices span less than a third of their parts, as on a head and body in one
+  /// piece. The subject then consists of these vertices, and lengths grow by half.
   bool is_section = false;
 
   double growth() const { return is_section ? 1.5 : 1; }
 };
 
-/// Vertices of the parts with one of some vertices, ascending. Throws std::out_of_range for one
-/// that is not there.
+/// All vertices of the parts that contain a vertex of `with`, ascending. Throws std::out_of_range
+/// for a vertex that does not exist.
 std::vector<VertexIndex> vertices_of_parts(const SurfaceParts& parts,
                                            const std::vector<VertexIndex>& with);
 
-/// The parts with one of some vertices, such as those that move or have a marker: what else is in
-/// the file does not count. `vertices` must not be empty. Throws std::out_of_range for one that is
-/// not there.
+/// Subject of the parts around some vertices, such as those that move or have a marker. Other parts
+/// in the file do not count. Throws std::out_of_range for a vertex that does not exist.
+/// \pre `vertices` is not empty
 Subject subject_around(const Positions& positions, const SurfaceParts& parts,
                        const std::vector<VertexIndex>& vertices);
 
-/// The box of a subject_around() some vertices.
+/// Bounding box of subject_around() some vertices; the diagonal includes the growth.
 struct SubjectBox {
   Eigen::RowVector3d center = Eigen::RowVector3d::Zero();
   double diagonal = 0;
@@ -57,21 +57,21 @@ struct SubjectBox {
 SubjectBox subject_box(const Positions& positions, const SurfaceParts& parts,
                        const std::vector<VertexIndex>& vertices);
 
-/// Largest distance between two vertices of the parts with one of some vertices: that of the mesh,
-/// bit by bit, where both are equal to rounding or there is no vertex.
+/// Largest distance between two vertices of the parts that contain one of `vertices`. Equals the
+/// diameter of the mesh, bit by bit, if both agree up to rounding or `vertices` is empty.
 double diameter_of_parts(const Positions& positions, const Triangles& triangles,
                          const std::vector<VertexIndex>& vertices);
 
-/// A boundary spans a connected part if the farthest of its vertices are apart by this share of the
-/// part's diameter. Necks and the edges of face masks span half of it and more, mouths and eyes
-/// that a face leaves open a third at most.
+/// A boundary spans a connected part if its diameter is at least this share of the part's. Necks
+/// and the edges of face masks span half of it or more; open mouths and eyes at most a third.
 constexpr double kRimShare = 0.4;
 
-/// Vertices on the rims of a surface, where a scan ends or a face is cut out of a head, and those
-/// that share a triangle with them (N). Of each connected part that is the longest boundary, if it
-/// spans the part; shorter ones are openings in the surface. Edges of one triangle are a boundary,
-/// where coinciding vertices are welded; the parts of a boundary hang together by vertices. Throws
-/// std::invalid_argument where sizes differ, or for a triangle with a vertex that is not there.
+/// Marks the vertices on the rims of a surface and those that share a triangle with them (N). A rim
+/// is where a scan ends or a face is cut out of a head.
+///
+/// The rim of a connected part is its longest boundary, if that spans the part; shorter boundaries
+/// are openings. Boundary edges have one triangle after welding, and form boundaries through common
+/// vertices. Throws std::invalid_argument if sizes differ or a triangle has a bad vertex index.
 std::vector<bool> near_rims(const Positions& positions, const Triangles& triangles,
                             const Weld& weld);
 

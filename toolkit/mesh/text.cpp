@@ -11,7 +11,7 @@
 namespace mimetra {
 namespace {
 
-/// The digits from `at` on without leading zeros; moves `at` behind them.
+/// Digits from `at` on without leading zeros; moves `at` behind them.
 std::string_view number_run(const std::string& text, std::size_t& at) {
   while (at < text.size() && text[at] == '0') ++at;
   const std::size_t first = at;
@@ -19,7 +19,7 @@ std::string_view number_run(const std::string& text, std::size_t& at) {
   return std::string_view(text).substr(first, at - first);
 }
 
-/// As printf writes it, but with a decimal point in every locale.
+/// Formats as printf does, but with '.' in every locale.
 std::string number_text(double value, std::chars_format format, int precision) {
   std::array<char, 400> text;  // a double in fixed notation has up to 309 digits before the point
   const auto end =
@@ -82,7 +82,7 @@ bool natural_less(const std::string& a, const std::string& b) {
     }
   }
   const bool a_ends = i == a.size(), b_ends = j == b.size();
-  // "1" and "01" are equal numbers: any fixed order will do.
+  // "1" and "01" are equal numbers, so any fixed order is correct.
   return a_ends && b_ends ? a < b : a_ends;
 }
 
@@ -114,7 +114,7 @@ std::vector<std::string> words_of(const std::vector<int>& numbers) {
 }
 
 std::string readable(double value, int digits) {
-  // 185 degrees are none of 1.9e+02.
+  // Fixed notation, because 1.9e+02 would be a bad text for 185 degrees.
   constexpr double kLong = 1e6;
   const double size = std::abs(value);
   if (size < kLong && size >= std::pow(10, digits) - 0.5) return fixed(value, 0);
@@ -143,7 +143,7 @@ std::size_t printable_bytes(std::string_view text) {
   constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
   const bool is_character =
       code >= kLeast[size] && code <= 0x10ffff && (code < 0xd800 || code > 0xdfff);
-  // A second set of controls, and what turns the direction of writing.
+  // The C1 controls, and characters that change the direction of writing.
   const bool is_control =
       code < 0xa0 || (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
   return is_character && !is_control ? size : 0;
@@ -161,7 +161,8 @@ bool is_printable(std::string_view text) {
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
   std::string nearest;
   const std::string small = in_small_letters(word);
-  // A third of the letters may be wrong, as in "decompse" or "--radios"; more is another word.
+  // A third of the letters may be wrong, as in "decompse" or "--radios"; beyond that it is another
+  // word.
   std::size_t best = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string& candidate : known) {
     const std::size_t distance = edit_distance(small, in_small_letters(candidate));

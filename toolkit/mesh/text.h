@@ -6,62 +6,62 @@
 #include <string_view>
 #include <vector>
 
-/// Names and numbers as people read and order them.
+/// Formatting and ordering of names and numbers for users.
 namespace mimetra {
 
-/// True for 0 to 9, whatever the locale.
+/// Whether `c` is 0 to 9, in every locale.
 inline bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// A to Z become a to z.
+/// Replaces A to Z by a to z.
 std::string lower_case(std::string text);
 
-/// a to z become A to Z.
+/// Replaces a to z by A to Z.
 std::string upper_case(std::string text);
 
-/// ".ply" for NAME.PLY.
+/// Extension in small letters: ".ply" for NAME.PLY.
 std::string lower_extension(const std::filesystem::path& path);
 
-/// Orders names as people count: runs of digits by their value, so that 2 comes before 10.
+/// Compares names with runs of digits ordered by value, so that 2 comes before 10.
 bool natural_less(const std::string& a, const std::string& b);
 
-/// The words with `between` between them, and `last` before the last one: "2, 5 and 7".
+/// Joins words with `between`, but with `last` before the last one: "2, 5 and 7".
 std::string joined(const std::vector<std::string>& words, std::string_view between,
                    std::string_view last);
 std::string joined(const std::vector<std::string>& words, std::string_view between = ", ");
 
-/// The first of many: "a, b, c and 12 more".
+/// Joins at most `most` words and counts the rest: "a, b, c and 12 more".
 std::string listed(const std::vector<std::string>& words, std::size_t most = 8);
 
-/// 0, 5, 17 as words.
+/// Numbers as words: "0", "5", "17".
 std::vector<std::string> words_of(const std::vector<int>& numbers);
 
-/// `value` with `digits` significant digits, below a million with all before the point; with a
-/// decimal point in every locale.
+/// `value` with `digits` significant digits, or more if it needs them before the point and is below
+/// a million. The decimal point is '.' in every locale.
 std::string readable(double value, int digits = 4);
 
-/// `value` with `decimals` digits after the point, in every locale.
+/// `value` with `decimals` digits after the point, which is '.' in every locale.
 std::string fixed(double value, int decimals);
 
-/// A share as a percentage: 0.1234 is "12.3 %".
+/// Share as a percentage: 0.1234 is "12.3 %".
 std::string percent(double share);
 
-/// Bytes of the character in UTF-8 that `text` begins with; 0 where it begins with a control
-/// character, with one that turns the direction of writing, or with none. \pre not empty
+/// Number of bytes of the UTF-8 character at the start of `text`. Returns 0 for an invalid
+/// character, a control character, or one that changes the direction of writing. \pre not empty
 std::size_t printable_bytes(std::string_view text);
 
-/// True where all of it is such characters.
+/// Whether `text` consists only of such characters.
 bool is_printable(std::string_view text);
 
-/// The known word nearest to `word` by edit distance, capital or not, where it is near enough to be
-/// meant; empty otherwise. Ties go to the earlier word.
+/// Known word nearest to `word` by edit distance, ignoring case. Empty if none is near enough. Ties
+/// go to the earlier word.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
 
-/// "; did you mean 'WORD'?" with that one, to end a message; empty where there is none.
+/// "; did you mean 'WORD'?" with the nearest_word(), to end a message; empty if there is none.
 std::string suggestion_for(const std::string& word, const std::vector<std::string>& known);
 
-/// `text` as XML and HTML hold it, between tags and in attributes.
+/// `text` escaped for XML and HTML, both between tags and in attributes.
 std::string escaped_for_xml(const std::string& text);
 
 }  // namespace mimetra

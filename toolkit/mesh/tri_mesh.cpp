@@ -53,13 +53,13 @@ bool same_face(const Polygons& a, const Polygons& b, int face) {
 
 using Words = std::vector<std::string>;
 
-/// The keywords of a kind. Each has a state of its own: `o` does not end what `g` began.
+/// Keywords of a kind. Each has its own state: `o` does not end what `g` began.
 std::vector<std::string_view> keywords(FaceGroupKind kind) {
   if (kind == FaceGroupKind::material) return {"usemtl"};
   return {"g", "o"};
 }
 
-/// What stands after the keyword: groups are words; a material is one name, spaces and all.
+/// Names after the keyword: each word for groups, the whole text with spaces for materials.
 Words names_in(const std::string& statement, const std::string& keyword, FaceGroupKind kind) {
   std::istringstream rest(statement.substr(keyword.size()));
   Words words{std::istream_iterator<std::string>(rest), {}};
@@ -79,7 +79,7 @@ Connectivity Connectivity::from_polygons(int vertices, Polygons polygons) {
   check_polygons(vertices, polygons);
   Connectivity result;
   result.vertices = vertices;
-  // A polygon of c corners gives c - 2 triangles.
+  // A polygon with c corners gives c - 2 triangles.
   const auto triangles = static_cast<int>(polygons.corners.size()) - 2 * polygons.size();
   result.triangles.resize(triangles, 3);
   result.polygon_of_triangle.reserve(triangles);

@@ -10,10 +10,10 @@ using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 /// Vertex indices of triangles, M x 3, 0-based, counter-clockwise seen from outside.
 using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
-/// Row of a vertex in `Positions`; -1 where there is none.
+/// Row of a vertex in `Positions`; -1 for no vertex.
 using VertexIndex = int;
 
-/// A view of positions that somebody else owns: a frame of a sequence, a host's buffer.
+/// View of positions with another owner, such as a frame of a sequence or a host's buffer.
 using PositionsView = Eigen::Map<const Positions>;
 
 }  // namespace mimetra

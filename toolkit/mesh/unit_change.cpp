@@ -30,7 +30,7 @@ void change_units(CoordinatesView positions, const UnitChange& change) {
   if (change.up != UpTurn::keep) {
     positions.col(1).swap(positions.col(2));
     const int turned = change.up == UpTurn::y_to_z ? 1 : 2;
-    positions.col(turned) = 0 - positions.col(turned).array();  // 0 stays 0, and not -0
+    positions.col(turned) = 0 - positions.col(turned).array();  // keeps 0 instead of -0
   }
   if (change.scale != 1) positions *= change.scale;
 }

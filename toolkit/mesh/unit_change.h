@@ -8,10 +8,9 @@
 
 namespace mimetra {
 
-/// How what is up is turned.
+/// Change of the up axis.
 enum class UpTurn { keep, y_to_z, z_to_y };
 
-/// As people choose it.
 constexpr std::string_view choice_name(UpTurn value) {
   switch (value) {
     case UpTurn::keep:
@@ -26,10 +25,10 @@ constexpr std::string_view choice_name(UpTurn value) {
 
 /// A change of unit and axes.
 struct UnitChange {
-  /// Factor of all positions, the rest pose's too.
+  /// Factor of all positions, including the rest pose.
   double scale = 1;
-  /// `y_to_z` turns by 90 degrees about x, so that what was up along y is up along z and x stays:
-  /// (x, y, z) becomes (x, -z, y). `z_to_y` is the way back.
+  /// `y_to_z` turns by 90 degrees about x, so that the up axis changes from y to z: (x, y, z)
+  /// becomes (x, -z, y). `z_to_y` is the inverse.
   UpTurn up = UpTurn::keep;
 
   static constexpr Option kScale{
@@ -40,15 +39,14 @@ struct UnitChange {
 
 using CoordinatesView = Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>;
 
-/// Changes points or displacements (N x 3) in place. Turns exactly: coordinates change places and
-/// signs.
+/// Changes points or displacements (N x 3) in place. The turn is exact: it only exchanges and
+/// negates coordinates.
 void change_units(CoordinatesView positions, const UnitChange& change);
 
-/// The header of a sequence in other units and axes.
 SequenceHeader in_units(SequenceHeader header, const UnitChange& change);
 
-/// The same sequence in other units and axes, read when it is needed; the source itself where
-/// nothing changes. Throws std::invalid_argument for options out of range.
+/// The same sequence in other units and axes, changed on reading; the source itself if nothing
+/// changes. Throws std::invalid_argument for options out of range.
 std::shared_ptr<const FrameSource> with_units(std::shared_ptr<const FrameSource> source,
                                               const UnitChange& change);
 

@@ -11,14 +11,14 @@
 namespace mimetra {
 namespace {
 
-/// Lexicographic order of points, which puts equal ones side by side. 0 and -0 compare equal.
+/// Key for a lexicographic order of points, which makes equal ones adjacent; 0 equals -0.
 std::tuple<double, double, double> place(const Positions& positions, VertexIndex vertex) {
   return {positions(vertex, 0), positions(vertex, 1), positions(vertex, 2)};
 }
 
 void check_finite(const Positions& positions) {
   for (int vertex = 0; vertex < positions.rows(); ++vertex) {
-    // Not-a-number has no place in an order.
+    // NaN has no place in an order.
     if (!positions.row(vertex).allFinite()) {
       throw std::invalid_argument("vertex " + std::to_string(vertex) + " is not finite");
     }
@@ -103,7 +103,7 @@ std::vector<VertexIndex> parting_vertices(const FrameSource& sequence, const Wel
           const PositionsView frame = block.frame(row);
           for (const VertexIndex vertex : welded) {
             const VertexIndex lowest = weld.representative[vertex];
-            // Not-a-number parts, too.
+            // Written so that NaN also parts.
             if ((frame.row(vertex) - frame.row(lowest)).norm() <= tolerance) continue;
             parts[vertex].store(true, std::memory_order_relaxed);
           }
@@ -121,7 +121,7 @@ Weld staying_together(const FrameSource& sequence, const Weld& weld, double tole
   Weld staying = weld, tested = weld;
   double done = 0;
   do {
-    // Nobody knows how often something parts: each time, half of the progress that is left.
+    // The number of rounds is unknown, so each takes half of the remaining progress.
     const double next = (1 + done) / 2;
     const auto parting = parting_vertices(sequence, tested, tolerance, context.part(done, next));
     done = next;

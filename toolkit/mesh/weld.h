@@ -6,39 +6,37 @@
 
 namespace mimetra {
 
-/// Which vertices are one point of the surface: UV seams, every STL file.
+/// Vertices that are one point of the surface, as at UV seams and in every STL file.
 struct Weld {
-  /// Lowest vertex at the same place, or near it where it says so, for each vertex (N); itself
-  /// where it is alone or the first.
+  /// For each vertex (N), the lowest vertex at the same place, which may be itself. Welds with a
+  /// tolerance may also join places that are near.
   std::vector<VertexIndex> representative;
-  /// Vertices that are not their own representative.
+  /// Number of vertices that are not their own representative.
   int count = 0;
 
-  /// Nothing is welded.
+  /// Weld that joins no vertices.
   static Weld none(int vertices);
-  /// Vertices whose coordinates are equal bit by bit (0 and -0 are equal). Throws
-  /// std::invalid_argument that names a vertex which is not finite.
+  /// Welds vertices with bitwise equal coordinates; 0 and -0 are equal. Throws
+  /// std::invalid_argument if a vertex is not finite; the message names it.
   static Weld exact(const Positions& positions);
 
-  /// Throws std::invalid_argument unless there is one representative for each of `positions` (N x
-  /// 3), which is within `tolerance` (length) of it, its own representative, and not above its
-  /// vertex.
+  /// Throws std::invalid_argument unless each of `positions` (N x 3) has a representative. This
+  /// must be within `tolerance` (length), not above the vertex, and its own representative.
   void check(const Positions& positions, double tolerance = 0) const;
 
-  /// The same triangles on representatives, M x 3. An index out of range stays.
+  /// Replaces vertices by their representatives (M x 3). Indices out of range are kept.
   Triangles welded(const Triangles& triangles) const;
 };
 
 /// Vertices that are farther than `tolerance` (length) from their representative in some frame,
-/// ascending. Frames are read in blocks, and not at all where nothing is welded. Throws
-/// std::invalid_argument where the weld is of another vertex count; what reading throws, Cancelled.
+/// ascending. Frames are read in blocks, or not at all if nothing is welded. Throws
+/// std::invalid_argument if the vertex counts differ, whatever reading throws, and Cancelled.
 std::vector<VertexIndex> parting_vertices(const FrameSource& sequence, const Weld& weld,
                                           double tolerance, const Context& = {});
 
-/// Splits what parts: every vertex of the result stays within `tolerance` (length) of its
-/// representative in all frames. Those of one place that part from the lowest are welded to the
-/// lowest of them, unless they part from it in turn, and so on; where nothing parts, the frames are
-/// read once. Throws as parting_vertices().
+/// Splits a weld so that every vertex stays within `tolerance` (length) of its representative in
+/// all frames. Vertices that part from their representative are welded to the lowest of them, and
+/// tested again. If nothing parts, the frames are read once. Throws as parting_vertices().
 Weld staying_together(const FrameSource& sequence, const Weld& weld, double tolerance,
                       const Context& = {});
 

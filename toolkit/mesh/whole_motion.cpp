@@ -12,9 +12,9 @@
 namespace mimetra {
 namespace {
 
-/// What is measured of a frame: of squared distances from the rest pose, all, what the motion and
-/// the similarity leave, and those of the stillest vertices there and by the motion, which are
-/// added over frames; the others are of each.
+/// Numbers measured for a frame. The first kSummed are sums of squared distances and are added over
+/// the frames. They are the distances from the rest pose, from its moved and from its scaled copy.
+/// Two more are the distances of the stillest vertices in the frame and in the moved copy.
 enum Number {
   kAll,
   kLeftByMotion,
@@ -28,12 +28,12 @@ enum Number {
 constexpr int kSummed = 5, kNumbers = 8;
 using Numbers = Eigen::Matrix<double, 1, kNumbers>;
 
-/// A twentieth of so many, and one.
+/// A twentieth of `count`, plus one.
 Eigen::Index count_of_least(Eigen::Index count) {
   return std::min(count, count / 20 + 1);
 }
 
-/// That many that are least, ascending; of equals the first.
+/// Indices of the count_of_least() least values, ascending; ties go to the lower index.
 std::vector<Eigen::Index> least_of(const Eigen::VectorXd& values) {
   std::vector<Eigen::Index> order(static_cast<std::size_t>(values.size()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
@@ -70,7 +70,7 @@ Numbers numbers_of(const Positions& rest, const Eigen::Ref<const Positions>& pos
 WholeMotion together(const Positions& rest, const Eigen::Ref<const Eigen::VectorXd>& sums,
                      const Eigen::Ref<const Eigen::MatrixXd>& of_each) {
   constexpr int kFew = 10;
-  // Of the size (RMS): single precision alone moves by less.
+  // Share of the size (RMS) that single precision alone does not reach.
   constexpr double kRounding = 1e-6;
   WholeMotion whole;
   whole.angle = of_each.col(kAngle - kSummed).maxCoeff();
@@ -83,7 +83,7 @@ WholeMotion together(const Positions& rest, const Eigen::Ref<const Eigen::Vector
   if (sums[kAll] > frames * kRounding * kRounding * size2 && rest.rows() >= kFew) {
     whole.left_by_motion = sums[kLeftByMotion] / sums[kAll];
     whole.left_by_similarity = sums[kLeftBySimilarity] / sums[kAll];
-    // What moves by less than a hundredth of the mean is on an axis of the motion, if on anything.
+    // Vertices that move by less than this share of the mean may be on an axis of the motion.
     constexpr double kOnAxis = 0.01;
     const auto stillest = static_cast<double>(count_of_least(rest.rows()));
     const double least =

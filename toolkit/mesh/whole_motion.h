@@ -4,39 +4,43 @@
 
 namespace mimetra {
 
-/// How much of a sequence's motion is one of the whole mesh: of its surface_vertices().
+/// Part of a sequence's motion that moves the mesh (its surface_vertices()) as a whole.
 struct WholeMotion {
-  /// Of the rigid motions that fit the frames best, the largest: degrees, and how far the rest
-  /// pose's centre goes.
+  /// Largest angle (degrees), and largest shift of the rest pose's centre, of the rigid motions
+  /// that fit the frames best.
   double angle = 0;
   double shift = 0;
-  /// The size of the frames against the rest pose, the farthest from 1.
+  /// Size of the frames relative to the rest pose; the value farthest from 1.
   double scale = 1;
-  /// What those motions leave of all squared distances from the rest pose, and what they leave if
-  /// each may also change the size; 1 where nothing moves by more than rounding, and for fewer than
-  /// ten vertices, which tell no motion from a deformation.
+  /// Share of the summed squared distances from the rest pose that the rigid motions leave. It is 1
+  /// if nothing moves beyond rounding, and for fewer than ten vertices.
   double left_by_motion = 1;
+  /// The same share if each motion may also change the size.
   double left_by_similarity = 1;
-  /// How far the vertices go that move least, a twentieth of all in each frame, against where the
-  /// motions take them (RMS, from a hundredth of the mean on): 1 in a motion of the whole, near 0
-  /// where some stay. 0 where nothing moves.
+  /// Distance moved by the stillest twentieth of the vertices of each frame, relative to the
+  /// distance that the motions give them. Both are RMS, plus a hundredth of the mean motion. It is
+  /// 1 if all moves as a whole, near 0 if some vertices stay, and 0 if left_by_motion is not
+  /// measured.
   double of_stillest = 0;
 
-  /// Whether they are most of it, and leave nothing behind. Of captured faces whole takes leave
-  /// 0.60 and 0.85, a jaw to the side 0.42; so do their lower halves 0.23, but of_stillest is 0.02
-  /// to 0.48 there. A head that turns or slides by as much leaves less than 0.35, with 0.5 to 1.
+  /// Whether rigid motions of the whole mesh explain most of the motion and leave no vertex behind.
+  ///
+  /// On captured faces, whole takes have left_by_motion 0.60 and 0.85, and a jaw moved sideways has
+  /// 0.42. Their lower halves have 0.23, but of_stillest is 0.02 to 0.48 there. A head that turns
+  /// or slides by as much has less than 0.35, with of_stillest from 0.5 to 1.
   bool moves() const { return left_by_motion < kMostlyMoved && of_stillest >= kFollowing; }
-  /// Whether their sizes are, and the motions without them are not.
+  /// Whether changes of size explain most of what the rigid motions leave, and exceed 5 %.
   bool is_scaled() const;
 
   static constexpr double kMostlyMoved = 0.35;
   static constexpr double kFollowing = 0.5;
 };
 
-/// Of one pose (N x 3), all of whose vertices count.
+/// Whole motion of one pose (N x 3), using all its vertices.
 WholeMotion whole_motion(const Positions& rest, const Positions& pose);
 
-/// Reads the frames once. Throws what reading throws, Cancelled.
+/// Whole motion of a sequence. Reads the frames once. Throws whatever reading throws, and
+/// Cancelled.
 WholeMotion whole_motion(const FrameSource& source, const Context& context = {});
 
 }  // namespace mimetra

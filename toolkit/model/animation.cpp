@@ -9,7 +9,7 @@ namespace mimetra {
 
 namespace {
 
-/// Of so many frames of a model, with times or without.
+/// Header for `frames` frames of a model, with or without times.
 SequenceHeader header_at(const BlendshapeModel& model, Eigen::Index frames, Eigen::VectorXd times,
                          bool times_are_known) {
   times_are_known = times_are_known && times.size() > 0;
@@ -87,9 +87,9 @@ Animation Animation::renumbered(std::shared_ptr<const Connectivity> connectivity
 }
 
 void Animation::read_frames(int first, FramesView poses) const {
-  // A product takes its columns, here the frames, in fours and the rest one by one, which adds in
-  // another order; and it takes another way altogether where there is only one. Runs that start
-  // at a multiple of four and end at one, or at the end, see the same numbers as the whole.
+  // A product computes four columns (here frames) at a time and the rest one by one, which adds in
+  // another order. A single column takes yet another path. Runs that begin and end at a multiple of
+  // four, or end at the last frame, see the same numbers as the whole.
   constexpr int kFrames = 4;
   const int last = first + static_cast<int>(poses.rows());
   const int end = std::min(frames(), (last + kFrames - 1) / kFrames * kFrames);
@@ -123,7 +123,7 @@ void RegionalAnimation::read_frames(int first, FramesView poses) const {
   for (Eigen::Index row = 0; row < poses.rows(); ++row) {
     poses.row(row) = neutral.transpose();
     // Each number is added up in one order, expression by expression and region by region, so that
-    // any run of frames gives the same.
+    // any run of frames gives the same result.
     Eigen::VectorXd at_vertex(model_->vertices());
     for (Eigen::Index j = 0; j < D; ++j) {
       at_vertex.setZero();

@@ -9,7 +9,7 @@
 
 namespace mimetra {
 
-/// Named displacement fields: column j of `displacements` (3N x D) is x0 y0 z0 x1 ... of shape j
+/// Named displacement fields. Column j of `displacements` (3N x D) is x0 y0 z0 x1 ... of shape j
 /// minus the neutral.
 struct ShapeBasis {
   std::vector<std::string> names;
@@ -18,8 +18,8 @@ struct ShapeBasis {
   int size() const { return static_cast<int>(names.size()); }
   /// Index of a name, or -1.
   int find(const std::string& name) const;
-  /// Throws std::invalid_argument unless there is one displacement field of `vertices` vertices for
-  /// each name and no name occurs twice. No names and no displacements are sound for any mesh.
+  /// Throws std::invalid_argument unless each name occurs once and has a displacement field of
+  /// `vertices` vertices. An empty basis fits any mesh.
   void check(int vertices) const;
 };
 
@@ -27,12 +27,13 @@ struct ShapeBasis {
 class BlendshapeModel {
  public:
   BlendshapeModel() = default;
-  /// `neutral` N x 3, `expressions` 3N x D (D may be 0). Throws std::invalid_argument where sizes
+  /// `neutral` N x 3, `expressions` 3N x D (D may be 0). Throws std::invalid_argument if sizes
   /// disagree or a name occurs twice.
   BlendshapeModel(std::shared_ptr<const Connectivity> connectivity, Positions neutral,
                   ShapeBasis expressions);
-  /// The neutral, and each expression by its name and the whole face that shows it. Throws
-  /// std::invalid_argument where one has other faces than the neutral or a name occurs twice.
+  /// Takes the neutral, and each expression as a name and a whole face. Throws
+  /// std::invalid_argument if an expression has other faces than the neutral or a name occurs
+  /// twice.
   BlendshapeModel(const TriMesh& neutral,
                   const std::vector<std::pair<std::string, TriMesh>>& expressions);
 
@@ -43,10 +44,10 @@ class BlendshapeModel {
   const Positions& neutral() const { return neutral_; }
   const ShapeBasis& expressions() const { return expressions_; }
 
-  /// The pose of the weights `beta` (D). Throws std::invalid_argument where the count differs.
+  /// Pose of the weights `beta` (D). Throws std::invalid_argument for another number of weights.
   Positions pose(const Eigen::VectorXd& beta) const;
   /// One frame per row of `weights` (F x D); the rest pose is the neutral. `times` as in
-  /// MeshSequence. Throws std::invalid_argument where the count differs.
+  /// MeshSequence. Throws std::invalid_argument for another number of weights.
   MeshSequence animate(const Eigen::MatrixXd& weights, Eigen::VectorXd times = {}) const;
 
  private:
@@ -55,23 +56,23 @@ class BlendshapeModel {
   ShapeBasis expressions_;
 };
 
-/// The model whose expressions move each vertex by a share of what they do (N):
-/// pose(v) = neutral(v) + shares_v sum_j beta_j dV_j(v). Where the share is 0 poses are the
-/// neutral, bit by bit. Throws std::invalid_argument for another number of shares.
+/// Scales all displacements of vertex v by shares[v] (N): pose(v) = neutral(v) + shares_v sum_j
+/// beta_j dV_j(v). Vertices with a share of 0 stay at the neutral, bit by bit. Throws
+/// std::invalid_argument for another number of shares.
 BlendshapeModel faded(const BlendshapeModel& model, const Eigen::VectorXd& shares);
 
-/// A face that varies in identity and expression: M(alpha, beta) = mean + sum alpha_i V_i +
-/// sum beta_j B_j (eq. 3). PCA identities are scaled by their standard deviations, so that alpha_i
-/// counts those; their names are "0", "1", ...
+/// A face that varies in identity and expression: M(alpha, beta) = mean + sum alpha_i V_i + sum
+/// beta_j B_j (eq. 3). PCA identities are scaled by their standard deviations, so that alpha_i
+/// counts standard deviations. Their names are "0", "1", ...
 class MorphableModel {
  public:
   MorphableModel() = default;
-  /// `mean` N x 3; both bases 3N x D, either may be empty. Throws std::invalid_argument where sizes
+  /// `mean` N x 3; both bases 3N x D, either may be empty. Throws std::invalid_argument if sizes
   /// disagree or a basis has a name twice.
   MorphableModel(std::shared_ptr<const Connectivity> connectivity, Positions mean,
                  ShapeBasis identities, ShapeBasis expressions);
 
-  /// One person: there are no identities.
+  /// A single person, without identities.
   explicit MorphableModel(BlendshapeModel person);
 
   int vertices() const { return average_.vertices(); }
@@ -82,11 +83,11 @@ class MorphableModel {
   const Positions& mean() const { return average_.neutral(); }
   const ShapeBasis& identities() const { return identities_; }
   const ShapeBasis& expressions() const { return average_.expressions(); }
-  /// The person whose neutral is the mean.
+  /// Person whose neutral is the mean.
   const BlendshapeModel& average() const { return average_; }
 
-  /// The person with identity coefficients `alpha` (one per identity, or empty for the mean).
-  /// Throws std::invalid_argument where the count differs.
+  /// Person with identity coefficients `alpha` (one per identity, or empty for the mean). Throws
+  /// std::invalid_argument for another number of coefficients.
   BlendshapeModel person(const Eigen::VectorXd& alpha = {}) const;
 
  private:

@@ -16,15 +16,15 @@ namespace {
 
 enum class Side { lower, free, upper };
 
-/// Rounding of a multiplier is a few units in the last place of its terms, |h| and |G| |x|.
+/// Rounding of a multiplier: a few units in the last place of its terms, |h| and |G| |x|.
 constexpr double kMultiplierRounding = 16 * std::numeric_limits<double>::epsilon();
 
-/// Pivots below this share of the largest mean a singular system, for which LDLT's solution is not
-/// to be trusted.
+/// Pivots below this share of the largest indicate a singular system, for which the solution of
+/// LDLT is unreliable.
 constexpr double kSingularPivot = 1e-13;
 
-/// A problem of D unknowns needs about D passes. Where rounding makes it go on for ten times that,
-/// the tolerance of the multipliers grows tenfold, and again, so that it ends.
+/// A problem of D unknowns needs about D passes. If rounding makes it run for ten times as many,
+/// the tolerance of the multipliers grows tenfold, and it starts kGrowths times before it fails.
 constexpr int kPatience = 10;
 constexpr int kGrowths = 6;
 
@@ -66,8 +66,8 @@ class ActiveSet {
   }
 
  private:
-  /// Moves towards the minimum over the free variables. The first one that meets its bound is fixed
-  /// there, which ends the move. True when the minimum is reached.
+  /// Moves towards the minimum over the free variables. The first variable that meets its bound is
+  /// fixed there, which ends the move. Returns true if the minimum is reached.
   bool reach_minimum() {
     std::vector<Eigen::Index> free;
     for (Eigen::Index j = 0; j < x_.size(); ++j) {
@@ -100,8 +100,8 @@ class ActiveSet {
     return false;
   }
 
-  /// Minimum over the free variables, the others at their bounds; the shortest where there are
-  /// many. It depends on the set of free variables only, not on the way there.
+  /// Minimum over the free variables with the others at their bounds; the shortest if it is not
+  /// unique. It depends on the set of free variables only, not on the path to it.
   Eigen::VectorXd minimum(const std::vector<Eigen::Index>& free) const {
     Eigen::VectorXd bound = x_;
     for (const Eigen::Index j : free) bound[j] = 0;
@@ -113,7 +113,8 @@ class ActiveSet {
     return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(system).solve(right);
   }
 
-  /// Frees the bound variable with the strongest pull inwards, and returns it; -1 at the optimum.
+  /// Frees the bound variable with the strongest inward pull and returns its index; -1 at the
+  /// optimum.
   Eigen::Index release() {
     const Eigen::VectorXd pull = h_ - gram_ * x_;
     const double tolerance = rounding_ * (h_.lpNorm<Eigen::Infinity>() +
@@ -185,8 +186,8 @@ double box_optimality_violation(const Eigen::MatrixXd& gram, const Eigen::Vector
 
 namespace {
 
-/// Well conditioned problems take three to six passes; exchanging whole blocks can go round in
-/// circles, which is given up after so many.
+/// Well conditioned problems take three to six passes. Exchanging whole blocks can cycle, so the
+/// method gives up after this number of passes.
 constexpr int kMostPasses = 40;
 
 /// Rounding of an unknown in units of the box, and of a multiplier in units of its terms.
@@ -208,7 +209,7 @@ class BlockExchange {
     }
   }
 
-  /// False where the passes do not end, or the system is not definite.
+  /// Returns false if the passes do not end or the system is not definite.
   bool solve() {
     for (int pass = 0; pass < kMostPasses; ++pass) {
       if (!solve_for_free()) return false;
@@ -222,7 +223,7 @@ class BlockExchange {
   const Eigen::VectorXd& x() const { return x_; }
 
  private:
-  /// The minimum over the free unknowns, wherever it is, the others at their bounds.
+  /// Solves for the free unknowns without bounds, with the others at their bounds.
   bool solve_for_free() {
     free_.clear();
     for (Eigen::Index j = 0; j < x_.size(); ++j) {
@@ -240,8 +241,8 @@ class BlockExchange {
     return x_.allFinite();
   }
 
-  /// Sends unknowns that left the box to the bound they crossed, and frees those whose multiplier
-  /// pulls inwards. False where there are none: x is the solution.
+  /// Moves unknowns that left the box to the bound they crossed, and frees unknowns whose
+  /// multiplier pulls inwards. Returns false if there are none: x is the solution.
   bool exchange() {
     const Eigen::VectorXd pull = h_ - gram_ * x_;
     const double tolerance =

@@ -46,7 +46,7 @@ bool is_side_movement(const std::string& stem) {
   return stem == "jaw" || stem == "mouth";
 }
 
-/// What the right half of a left one is called without its side; empty for what is no half.
+/// Stem of the right half for the stem of a left half; empty if the name is not a half.
 std::string stem_of_right(const std::string& left) {
   if (is_side_movement(left)) return {};
   if (left == "eyelookin") return "eyelookout";
@@ -56,7 +56,7 @@ std::string stem_of_right(const std::string& left) {
 
 /// ARKit's names, spelled out and folded.
 struct KnownGroup {
-  Exclusive least;  // the choice from which on it counts
+  Exclusive least;  // smallest choice that includes the group
   std::vector<std::string_view> names;
 };
 

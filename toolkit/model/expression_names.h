@@ -7,17 +7,16 @@
 
 #include "toolkit/mesh/option.h"
 
-/// What the names of expressions tell: ARKit's, and others that end like them.
+/// Meanings of expression names: ARKit's names, and other names with the same endings.
 namespace mimetra {
 
-/// Which expressions exclude each other, of those that are known by name.
+/// Known expressions that exclude each other.
 enum class Exclusive {
   none,
   eyes,  ///< each eye looks up or down, and in or out
-  all    ///< and jawOpen excludes mouthClose, which performances of ARKit use together
+  all    ///< eyes, and jawOpen excludes mouthClose, although captures of ARKit use both together
 };
 
-/// As people choose it.
 constexpr std::string_view choice_name(Exclusive value) {
   switch (value) {
     case Exclusive::none:
@@ -30,33 +29,32 @@ constexpr std::string_view choice_name(Exclusive value) {
   return {};
 }
 
-/// `mouthSmile_L`, `mouthSmile.l`, `mouthSmile_left` or `L_mouthSmile` as captures write it:
-/// `mouthSmileLeft`.
+/// Returns `mouthSmileLeft` for `mouthSmile_L`, `mouthSmile.l`, `mouthSmile_left` and
+/// `L_mouthSmile`, which captures write.
 std::string spelled_out(const std::string& name);
 
-/// `jawOpen` of `blendShape1.jawOpen`, as the shapes of a node are called; the same where no node
-/// is named, also of `smile.L`, `smile.left` and `smile.001`.
+/// Returns `jawOpen` for `blendShape1.jawOpen`, as a node's shapes are called. Other names stay the
+/// same, also `smile.L`, `smile.left` and `smile.001`.
 std::string without_node(const std::string& name);
 
-/// `browInnerUp` of `browInnerUp_L`, `browInnerUpLeft` and the like. `jawLeft` and `mouthLeft`,
-/// which are no halves, stay.
+/// Returns `browInnerUp` for `browInnerUp_L`, `browInnerUpLeft` and the like. `jawLeft` and
+/// `mouthLeft` are not halves and stay.
 std::string without_side(const std::string& name);
 
-/// Without regard to case and underscores.
+/// Returns the name in lower case and without underscores.
 std::string folded_name(const std::string& name);
 
-/// Index of the expression of that name; where there is none, of the only one that is written
-/// otherwise, by its spelled_out() and folded_name(); else -1.
+/// Index of the expression with that name. If there is none, index of the only name with the same
+/// spelled_out() and folded_name(); otherwise -1.
 int expression_named(const std::string& name, const std::vector<std::string>& names);
 
-/// Left and right of one expression, by the index of each among `names`: those that end in Left and
-/// Right, _left and _right, _L and _R or .L and .R, in any case after a mark, or begin with left_
-/// and right_ or L_ and R_. Of an eye that looks
-/// in, the other half is the other eye that looks out: both look to one side. `jawLeft`,
-/// `mouthLeft` and their opposites move to a side and are no halves.
+/// Left and right halves of one expression, by index among `names`. Left halves end in Left, _left,
+/// _L or .L, or begin with left_, Left_ or L_, and right halves likewise. Single letters may be
+/// lower case. The other half of an eye that looks in is the other eye that looks out, because both
+/// look to one side. `jawLeft`, `mouthLeft` and their opposites move to a side and are not halves.
 std::vector<std::array<int, 2>> known_pairs(const std::vector<std::string>& names);
 
-/// Groups of expressions of which at most one is there at a time, by index among `names`.
+/// Groups of expressions that exclude each other, by index among `names`.
 std::vector<std::vector<int>> known_exclusives(const std::vector<std::string>& names,
                                                Exclusive which);
 

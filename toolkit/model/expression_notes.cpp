@@ -31,20 +31,20 @@ double least_move(const Positions& from, const Eigen::Ref<const Positions>& to,
 
 namespace {
 
-/// How expression `j` moves the vertices (N x 3).
+/// Displacement of the vertices (N x 3) by expression `j`.
 PositionsView field_of(const ShapeBasis& expressions, int j) {
   return {expressions.displacements.col(j).data(), expressions.displacements.rows() / 3, 3};
 }
 
-/// Whether vertices (N x 3) move by the same more than by what differs between them.
+/// Whether the common part of the vertices' motion (N x 3) exceeds the differences between them.
 bool moves_aside(const Positions& moves) {
   const Eigen::RowVector3d common = moves.colwise().mean();
   const double rest = (moves.rowwise() - common).squaredNorm() / static_cast<double>(moves.rows());
   return common.squaredNorm() > rest;
 }
 
-/// Whether a face is turned or has another size, as no expression does it: a jaw that opens turns
-/// it by 6 degrees and makes it larger by 7 %.
+/// Whether a face is turned or scaled more than any expression does. A jaw that opens turns it by 6
+/// degrees and makes it larger by 7 %.
 bool is_turned_or_scaled(const Positions& neutral, const Positions& moves) {
   constexpr double kTurned = 10, kScaled = 0.2;
   const WholeMotion whole = whole_motion(neutral, neutral + moves);
@@ -100,7 +100,7 @@ namespace {
 
 using Point = Eigen::RowVector3d;
 
-/// Where an expression moves: vertices by their squared motion.
+/// Place that an expression moves: the centroid of the vertices, weighted by squared motion.
 struct Place {
   Point centre = Point::Zero();
   bool moves = false;
@@ -112,8 +112,8 @@ Place place_of(const Positions& neutral, const Eigen::VectorXd& motion) {
   return {motion.transpose() * neutral / all, true};
 }
 
-/// Where the moving surface looks: outwards, as it bulges there. Zero where it looks to all sides;
-/// of two faces 0.51 and 0.58 of it looks to one.
+/// Direction that the moving surface faces, outwards because the surface bulges that way. Zero if
+/// it faces all sides; on two measured faces the direction has 0.51 and 0.58 of the area.
 Point front_of(const Positions& neutral, const Triangles& triangles,
                const Eigen::VectorXd& motion) {
   const Positions normals = triangle_normals(neutral, triangles);
@@ -129,7 +129,7 @@ Point front_of(const Positions& neutral, const Triangles& triangles,
   return front.norm() < kToOneSide * share.dot(areas) ? Point::Zero() : front;
 }
 
-/// From the mouth to the eyes; nothing where names do not tell.
+/// Direction from the mouth to the eyes; nullopt if the names do not show it.
 std::optional<Point> up_of(const std::vector<std::string>& names,
                            const std::vector<Place>& places) {
   constexpr std::array<std::string_view, 5> kAbove = {"brow", "blink", "squint", "eyewide", "lid"};
@@ -208,7 +208,7 @@ std::string described(const ExchangedSides& sides) {
          "; exchange them with their other halves";
 }
 
-/// Expressions that are the same but for how they are written: "'a_L' and 'aLeft'".
+/// Expressions whose names differ in spelling only: "'a_L' and 'aLeft'".
 std::vector<std::string> written_twice(const std::vector<std::string>& names) {
   std::map<std::string, std::string> first;
   std::vector<std::string> twice;

@@ -7,46 +7,51 @@
 
 namespace mimetra {
 
-/// Share of a face's diameter() by which no expression moves every vertex of it.
+/// Motion up to which a vertex is still, as a share of the face's diameter(). No expression moves
+/// every vertex by more.
 constexpr double kStillShare = 0.01;
 
-/// The least distance between two poses of a vertex that triangles use; 0 without vertices.
+/// Least distance between the two poses over all vertices that triangles use; 0 if there are none.
 double least_move(const Positions& from, const Eigen::Ref<const Positions>& to,
                   const Triangles& triangles);
 
-/// Names of expressions that are shapes of another place, turn or size than the neutral, as where
-/// they were exported side by side, with other axes or in another unit: every vertex moves by more
-/// than that and all by the same more than by what differs, or whole_motion() turns it by more than
-/// 10 degrees or changes its size by more than a fifth. The first components of a statistical
-/// model move every vertex, but not so.
+/// Names of expressions that have another place, orientation or size than the neutral. They come
+/// from exports side by side, with other axes or in another unit. Every vertex of such an
+/// expression moves by more than kStillShare of the diameter, and the common part of the motion
+/// exceeds the rest. Or whole_motion() turns it by more than 10 degrees or changes its size by more
+/// than a fifth. The first components of a statistical model also move every vertex, but do not
+/// meet these conditions.
 std::vector<std::string> displaced_expressions(const Positions& neutral, const Triangles& triangles,
                                                const ShapeBasis& expressions);
 
-/// Names of expressions that are no shapes of the neutral's surface, as where their vertices are in
-/// another order: a tenth of the area is turned by more than 90 degrees (those of two faces turn
-/// 0.3 % of it at most), or a vertex is_torn_off().
+/// Names of expressions that do not fit the neutral's surface, for example because their vertices
+/// have another order. A tenth of the area turns by more than 90 degrees (on two measured faces at
+/// most 0.3 %), or a vertex is_torn_off().
 std::vector<std::string> torn_expressions(const Positions& neutral, const Triangles& triangles,
                                           const ShapeBasis& expressions);
 
-/// What names of left and right halves tell about the sides that they move.
+/// Left and right halves that move the wrong side of the face.
 struct ExchangedSides {
   /// Left halves whose pair (known_pairs()) moves the sides the other way round.
   std::vector<std::string> left_halves;
-  /// Those are most of all: the face is its own mirror image, or "left" is the viewer's.
+  /// True if most pairs are exchanged: the face is mirrored, or "left" is the viewer's left.
   bool everywhere = false;
 };
 
-/// Left is up x front: front is where the moving surface looks, whichever way its triangles are
-/// wound, and up leads from the expressions that are named after the jaw, mouth, lips or chin to
-/// those named after brows and eyes. Where names tell no up or no side is the front, left is where
-/// most halves have it, and `everywhere` stays false. A half is where its squared motion is; pairs
-/// closer together than 2 % of the face tell nothing (halves of two rigs are 9 % and more apart).
+/// Compares the sides that left and right halves move with the left of the face, up x front.
+///
+/// Front is the direction that the moving surface faces, whichever way its triangles are wound. Up
+/// points from expressions named after the jaw, mouth, lips or chin to expressions named after
+/// brows and eyes. If up or front is unknown, left is the side that most left halves move, and
+/// `everywhere` stays false. The position of a half is the centroid of its squared motion. Pairs
+/// less than 2 % of the diameter apart are ignored (halves of two measured rigs are at least 9 %
+/// apart).
 ExchangedSides exchanged_sides(const Positions& neutral, const Triangles& triangles,
                                const ShapeBasis& expressions);
 
-/// What to say about a model's expressions under its `name`: displaced_expressions(),
-/// torn_expressions(), exchanged_sides() and those that are written in two ways. Nothing where all
-/// is as expected.
+/// Notes for the user on a model's expressions, which begin with `name`: displaced_expressions(),
+/// torn_expressions(), exchanged_sides() and names that differ in spelling only. Empty if all is as
+/// expected.
 std::vector<std::string> notes_on_expressions(const std::string& name, const Positions& neutral,
                                               const Triangles& triangles,
                                               const ShapeBasis& expressions);

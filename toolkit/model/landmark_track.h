@@ -7,19 +7,19 @@
 
 namespace mimetra {
 
-/// 2D landmarks over time, as a detector delivers them.
+/// 2D landmarks over time from a detector.
 struct LandmarkTrack {
-  std::vector<std::string> names;  ///< one per landmark; "1" to "68" for iBUG's
-  /// F x 2n: x0 y0 x1 y1 ... in pixels, y down, 0 at the middle of the first pixel; NaN where a
+  std::vector<std::string> names;  ///< one per landmark; "1" to "68" for iBUG's landmarks
+  /// F x 2n: x0 y0 x1 y1 ... in pixels, y down, 0 at the middle of the first pixel; NaN if the
   /// landmark was not seen.
   Frames points;
-  Eigen::VectorXd times;       ///< seconds (F); empty where the file has none
-  Eigen::VectorXd confidence;  ///< of the detector, in [0, 1] (F); empty where the file has none
-  /// Where it has no times: frames of the video from one to the next.
+  Eigen::VectorXd times;       ///< seconds (F); empty if the file has none
+  Eigen::VectorXd confidence;  ///< detector's confidence in [0, 1] (F); empty if the file has none
+  /// Video frames from one row to the next if `times` is empty.
   double step = 1;
-  /// What was noticed while reading: numbers of frames that are missing.
+  /// Notes for the user from reading, for example on missing frame numbers.
   std::vector<std::string> notes = {};
-  /// Whether `times` tell when the frames were taken, not at a rate that is guessed.
+  /// Whether `times` are the times of capture rather than times at a guessed rate.
   bool times_are_known = true;
 
   int landmarks() const { return static_cast<int>(names.size()); }

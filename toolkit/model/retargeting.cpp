@@ -13,8 +13,8 @@
 namespace mimetra {
 namespace {
 
-/// Of the largest element, or the largest eigenvalue: what digits in a file and rounding of a sum
-/// over a mesh leave.
+/// Tolerance relative to the largest element or eigenvalue. It covers digits lost in a file and
+/// rounding of a sum over a mesh.
 constexpr double kGramTolerance = 1e-9;
 
 void check_unique(const std::vector<std::string>& names, const std::string& whose) {

@@ -15,11 +15,11 @@ namespace mimetra {
 
 namespace {
 
-/// Energies that differ by less than this share of the least one there can be are equal: rounding
-/// would choose between them.
+/// Energies that differ by less than this share of their lower bound are equal: rounding would
+/// choose between them.
 constexpr double kEqualEnergies = 1e-12;
 
-/// Depth first, the lower unknown of a group first.
+/// Branch and bound over exclusive groups: depth first, the lower unknown of a group first.
 class ExclusiveSearch {
  public:
   ExclusiveSearch(const Eigen::MatrixXd& system, const UnknownRules& rules,
@@ -50,7 +50,8 @@ class ExclusiveSearch {
       return;
     }
     for (const int chosen : *group) {
-      // One that is held off by another group's choice: nothing moves here, as in every branch.
+      // Another group's choice already holds this unknown off. Its branch would move nothing in
+      // this group, which every other branch allows as well.
       if (lower[chosen] == upper[chosen]) continue;
       Eigen::VectorXd low = lower, high = upper;
       for (const int other : *group) {
@@ -60,7 +61,7 @@ class ExclusiveSearch {
     }
   }
 
-  /// The first group of which more than one moves; null where none is.
+  /// First group with more than one unknown that moves, or null.
   const std::vector<int>* broken_group(const Eigen::VectorXd& x) const {
     for (const std::vector<int>& group : rules_.exclusive) {
       const auto moves = [&](int unknown) { return x[unknown] != rules_.off[unknown]; };
@@ -77,7 +78,7 @@ class ExclusiveSearch {
   double tolerance_ = -1;  // until the root is solved
 };
 
-/// In each frame the place in its group of the unknown that may move; -1 where none ever does.
+/// Unknown of `group` that may move in each frame; -1 if none ever moves.
 std::vector<int> choices(const std::vector<int>& group, const Eigen::VectorXd& off,
                          const Eigen::MatrixXd& single) {
   std::vector<int> chosen(single.rows(), -1);

@@ -19,9 +19,9 @@ namespace {
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// The system of temporal smoothing, H = blockdiag(G_f) + mu D2^T D2 with D2 the second differences
-/// over time, on F x D matrices (one row a frame). It couples frames at most two apart: two frames
-/// taken as one block make it block tridiagonal.
+/// The system of temporal smoothing, H = blockdiag(G_f) + mu D2^T D2, where D2 are the second
+/// differences over time. It acts on F x D matrices (one row per frame). It couples frames at most
+/// two apart, so that blocks of two frames make it block tridiagonal.
 class TemporalSystem {
  public:
   /// `grams`: D x D, one for all frames or one for each; `differences` F - 2 rows. \pre F >= 3
@@ -33,14 +33,14 @@ class TemporalSystem {
   /// The diagonal of H (F x D).
   Rows diagonal() const;
 
-  /// A bound of the largest sum of absolute entries in a row of H.
+  /// Upper bound of the largest sum of absolute entries in a row of H.
   double norm() const;
 
-  /// Factors H + diag(extra). Where `free` (F x D of 0 and 1) is 0, the unknown is decoupled from
-  /// the others. Throws std::runtime_error where that is not positive definite.
+  /// Factors H + diag(extra). Unknowns with `free` = 0 (F x D of 0 and 1) are decoupled from the
+  /// others. Throws std::runtime_error if the system is not positive definite.
   void factorize(const Rows& extra, const Rows& free);
 
-  /// Solves the system factored last, for one right-hand side (F x D).
+  /// Solves the system that was factored last, for one right-hand side (F x D).
   Rows solve(const Rows& right) const;
 
  private:
@@ -193,11 +193,11 @@ Rows TemporalSystem::solve(const Rows& right) const {
 
 using Array = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Added to the factored diagonal, as a share of its mean, so that a singular Gram matrix can be
-/// factored. Residuals are those of the system itself, so it does not move the solution.
+/// Share of the mean diagonal that is added to the factored system, so that a singular Gram matrix
+/// can be factored. Residuals use the system itself, so the solution does not move.
 constexpr double kLift = 1e-13;
 
-/// The bounds of the unknowns, and which of them are free: 1, or 0 where both bounds are one.
+/// Bounds of the unknowns. `free` is 1, or 0 if both bounds are equal.
 struct Box {
   Array lower, upper, free;
 
@@ -219,18 +219,18 @@ Box box_of(const WeightBounds& bounds, const Eigen::MatrixXd& h) {
   return box;
 }
 
-/// What of H x is rounding, at most: a few units in the last place of its terms.
+/// Upper bound of the rounding of H x: a few units in the last place of its terms.
 double rounding_of(const TemporalSystem& system, const Box& box) {
   constexpr double kUnits = 4 * std::numeric_limits<double>::epsilon();
   return kUnits * system.norm() * box.lower.abs().max(box.upper.abs()).maxCoeff();
 }
 
-/// min x^T H x / 2 - h^T x over a box by a primal-dual interior-point method with Mehrotra's
-/// predictor and corrector; z and w are the multipliers of the lower and the upper bounds. Unknowns
-/// that are not free stay, with multipliers of 0.
+/// Minimises x^T H x / 2 - h^T x over a box by a primal-dual interior-point method with Mehrotra's
+/// predictor and corrector. The multipliers of the lower and upper bounds are z and w. Unknowns
+/// that are not free keep their value and have multipliers of 0.
 class InteriorPoint {
  public:
-  /// `scale`: how large multipliers are.
+  /// `scale`: magnitude of the multipliers.
   InteriorPoint(TemporalSystem& system, const Rows& h, const Box& box, double scale, double lift)
       : system_(system),
         h_(h),
@@ -245,8 +245,8 @@ class InteriorPoint {
         z_(scale * box.free),
         w_(z_) {}
 
-  /// Until products of distances and multipliers are below `gap` of the scale. May be called again
-  /// with a smaller one.
+  /// Iterates until the mean product of distance and multiplier is below `gap` times the scale. May
+  /// be called again with a smaller gap.
   void solve(double gap) {
     constexpr int kMost = 100;  // 16 to 30 steps are usual
     constexpr double kResidual = 1e-11;
@@ -261,9 +261,10 @@ class InteriorPoint {
 
   const Array& solution() const { return x_; }
 
-  /// -1 where the lower bound holds, 1 where the upper one does, 0 elsewhere: of a bound's distance
-  /// and its multiplier one goes to 0, and the larger says which. A distance is worth the
-  /// multiplier that moves a weight so far: far below 1 where the penalty is stiff.
+  /// -1 if the lower bound is active, 1 if the upper bound is, 0 otherwise. Of a bound's distance
+  /// and its multiplier one goes to 0, and the larger one decides. The stiffness turns a distance
+  /// into the multiplier that moves a weight that far; a stiff penalty makes such distances far
+  /// smaller than 1.
   Array sides() const {
     const Array stiffness = system_.diagonal().array();
     const Array sides =
@@ -280,12 +281,13 @@ class InteriorPoint {
     return ((below_ * z_).sum() + (above_ * w_).sum()) / (2 * unknowns_);
   }
 
-  /// Largest share of the way on which `value` stays positive.
+  /// Largest share of the step for which `value` stays positive.
   static double room(const Array& value, const Array& change) {
     return (change < 0).select(-value / change, 1.0).minCoeff();
   }
 
-  /// Newton direction towards complementarity products of `goal`, corrected by those of `before`.
+  /// Newton direction towards complementarity products of `goal`, corrected by the products of
+  /// `before`.
   Direction direction(const Array& residual, double goal, const Direction* before) const {
     const Array &s = below_, &t = above_;
     Array p = goal - s * z_, q = goal - t * w_;
@@ -328,26 +330,26 @@ class InteriorPoint {
   const Box& box_;
   double lift_, scale_, rounding_, unknowns_;
   Array x_;
-  /// Distances from the bounds, 1 where there is no room between them: kept beside x, as one far
-  /// below x's last place still tells which bounds hold.
+  /// Distances from the bounds, 1 for fixed unknowns. They are kept beside x, because a distance
+  /// far below x's last place still shows which bounds are active.
   Array below_, above_;
   Array z_, w_;
 };
 
-/// Minimum with some unknowns at their bounds, the others near `near`.
+/// Minimum with some unknowns at their bounds; the others start near `near`.
 Rows minimum_on(TemporalSystem& system, const Rows& h, const Box& box, const Array& sides,
                 const Array& near, double lift) {
   const Rows free = (sides == 0).cast<double>().matrix();
   system.factorize(lift * free, free);
   Rows x = (sides == 0).select(near, (sides > 0).select(box.upper, box.lower)).matrix();
-  // The second and third solve take out what the lift and rounding left.
+  // The second and third solve remove what the lift and rounding left.
   for (int round = 0; round < 3; ++round) {
     x += system.solve((h - system.product(x)).cwiseProduct(free));
   }
   return x;
 }
 
-/// Moves bounds until all signs are right; nothing where that does not settle.
+/// Moves bounds until all signs are right; nullopt if that does not settle.
 std::optional<Rows> polished(TemporalSystem& system, const Rows& h, const Box& box, Array sides,
                              const Array& near, double scale, double lift) {
   constexpr int kRounds = 20;
@@ -377,7 +379,7 @@ void check_counts(const std::vector<Eigen::MatrixXd>& grams, const Eigen::Matrix
   }
 }
 
-/// How far the multipliers of `x` are from right signs.
+/// Largest multiplier of `x` with the wrong sign.
 double wrong_pull(const Array& pull, const Box& box, const Array& x) {
   const Array up = (x < box.upper).select(pull, 0.0), down = (x > box.lower).select(-pull, 0.0);
   return std::max({up.maxCoeff(), down.maxCoeff(), 0.0});
@@ -399,12 +401,12 @@ Eigen::MatrixXd smooth_weights(const std::vector<Eigen::MatrixXd>& grams, const 
   TemporalSystem system(grams, second_differences(times), mu);
   const Array still = box.nearest_to_zero();
   const Array pull = (right - system.product(still.matrix())).array();
-  // Nothing pulls away from there: the interior-point method would have no scale to work with.
+  // Nothing pulls away from `still`: the interior-point method would have no scale to work with.
   if (wrong_pull(pull, box, still) == 0) return still.matrix();
   const double scale = std::max(right.lpNorm<Eigen::Infinity>(), pull.abs().maxCoeff());
   InteriorPoint method(system, right, box, scale, lift);
-  // Where the penalty is 10^7 times the data, free weights lie as little as 1e-9 off their bounds:
-  // which bounds hold shows only when the products are far below the rounding of x.
+  // If the penalty is 10^7 times the data, free weights can be as close as 1e-9 to their bounds.
+  // The products must then be far below the rounding of x to show which bounds are active.
   const auto polished_here = [&] {
     return polished(system, right, box, method.sides(), method.solution(), scale, lift);
   };
@@ -414,7 +416,7 @@ Eigen::MatrixXd smooth_weights(const std::vector<Eigen::MatrixXd>& grams, const 
   try {
     method.solve(1e-22);
   } catch (const std::runtime_error&) {
-    // So small a gap is beyond rounding where the penalty is much larger than the data.
+    // If the penalty is much larger than the data, such a small gap is below rounding.
     return settled.matrix();
   }
   if (auto found = polished_here()) return *found;

@@ -26,7 +26,7 @@ SecondDifferences second_differences(const Eigen::VectorXd& times) {
     const double before = (times[f + 1] - times[f]) / unit;
     const double after = (times[f + 2] - times[f + 1]) / unit;
     const double half = (before + after) / 2;
-    // The second derivative times the root of the time that it stands for.
+    // Second derivative times the square root of the time that the row represents.
     differences.row(f) << 1 / before, -1 / before - 1 / after, 1 / after;
     differences.row(f) *= std::sqrt(half) / half;
   }
@@ -98,7 +98,7 @@ void MotionFilter::smooth(Block& x) const {
   const auto before = [this](Eigen::Index i) { return differences_(i, 0); };
   const auto after = [this](Eigen::Index i) { return differences_(i, 2); };
   Block u(n, kCoordinates);
-  // Steps are taken first: those of what does not move are exactly 0.
+  // Steps are computed first, so that they are exactly 0 for coordinates that do not move.
   for (Eigen::Index i = 0; i < n; ++i) {
     u.row(i) = after(i) * (x.row(i + 2) - x.row(i + 1)) - before(i) * (x.row(i + 1) - x.row(i));
     if (i >= 1) u.row(i) -= first_[i - 1] * u.row(i - 1);

@@ -11,7 +11,7 @@ namespace mimetra {
 
 namespace {
 
-/// Looks up names of rules among those of a model.
+/// Index of a name of the rules among a model's names.
 class NameIndex {
  public:
   NameIndex(const std::vector<std::string>& names, const WeightRules& rules)

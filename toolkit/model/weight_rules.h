@@ -11,8 +11,8 @@
 
 namespace mimetra {
 
-/// How the weight beta of an expression, which is solved for, becomes the weight that is written:
-/// gain * beta + offset. The limits hold on what is written, and so bound beta.
+/// Rule that turns the solved weight beta of an expression into the written weight, gain * beta +
+/// offset. The limits apply to the written weight, and so bound beta.
 struct ExpressionRule {
   double minimum = 0;
   double maximum = 1;
@@ -20,55 +20,55 @@ struct ExpressionRule {
   double offset = 0;
 };
 
-/// What is known of a model's expressions besides their shapes, by their names.
+/// Rules for a model's expressions, by name.
 struct WeightRules {
-  /// What messages call them: the file.
+  /// Name that messages use: the file.
   std::string name = {};
-  /// Left and right of one expression. One that is named here is in no pair that names tell.
+  /// Left and right halves of one expression. Pairs known from the names apply only to expressions
+  /// that are not listed here.
   std::vector<std::array<std::string, 2>> pairs = {};
-  /// Groups of which at most one expression is written as another number than 0 in a frame.
+  /// Groups in which at most one expression per frame has a written weight other than 0.
   std::vector<std::vector<std::string>> exclusive = {};
   std::map<std::string, ExpressionRule> expressions = {};
 
   bool empty() const { return pairs.empty() && exclusive.empty() && expressions.empty(); }
 };
 
-/// Rules of D unknowns, by their numbers.
+/// Rules for D unknowns, by index.
 struct UnknownRules {
   /// lower <= upper (D).
   Eigen::VectorXd lower, upper;
-  /// What an unknown of `exclusive` is where it is not the one that may move, within its bounds
-  /// (D).
+  /// Value within its bounds of an unknown of `exclusive` that may not move (D).
   Eigen::VectorXd off;
   /// Weight of (x_a - x_b)^2 for each pair.
   double pair_weight = 0;
   std::vector<std::array<int, 2>> pairs = {};
   std::vector<std::vector<int>> exclusive = {};
 
-  /// 0 <= x <= 1, and nothing else.
+  /// 0 <= x <= 1, without other rules.
   static UnknownRules box(Eigen::Index unknowns);
-  /// Keeps one unknown at the number nearest to 0 that it may be, off where it is in a group, and
-  /// out of all pairs.
+  /// Fixes an unknown at `off` if it is in a group, otherwise at the value within its bounds
+  /// nearest to 0. Removes it from all groups and pairs.
   void hold(int unknown);
 };
 
-/// Rules of a model's expressions, and how solved weights become written ones.
+/// Rules for a model's expressions, and the conversion between solved and written weights.
 class ExpressionRules {
  public:
-  /// `names` of the model's expressions (D). Pairs and groups that names tell come after those of
-  /// `rules`. Throws MismatchError for a name that is not among them (with the nearest one), and
-  /// where 0 is not within the limits of one that is in a group; std::invalid_argument for limits
-  /// that cross, a gain that is not above 0, and what is not finite.
+  /// `names` of the model's expressions (D). Pairs and groups known from the names follow the pairs
+  /// and groups of `rules`. Throws MismatchError for an unknown name (and suggests the nearest),
+  /// and if the limits of an expression in a group do not include 0. Throws std::invalid_argument
+  /// for limits that cross, a gain that is not positive, and numbers that are not finite.
   ExpressionRules(const std::vector<std::string>& names, const WeightRules& rules = {},
                   Exclusive known = Exclusive::none);
 
-  /// Of beta; pair_weight is 0.
+  /// Rules for beta; pair_weight is 0.
   const UnknownRules& unknowns() const { return unknowns_; }
 
-  /// gain * beta + offset (F x D), within the limits; exactly beta where there is no rule, and
-  /// exactly 0 where a group's expression is off.
+  /// Written weights (F x D): gain * beta + offset within the limits. Exactly beta without a rule,
+  /// and exactly 0 for an expression that is off in its group.
   Eigen::MatrixXd written(const Eigen::MatrixXd& beta) const;
-  /// The beta of what was written.
+  /// Solved weights beta from the written weights (F x D).
   Eigen::MatrixXd solved(const Eigen::MatrixXd& written) const;
 
  private:

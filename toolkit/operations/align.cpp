@@ -31,7 +31,7 @@ Json json_of(const RigidTransform& transform) {
 
 struct AlignCall {
   AlignmentOptions alignment = {};
-  /// Manifest of the motion that is given back.
+  /// Manifest of the motion to give back.
   std::optional<std::filesystem::path> undo = {};
 
   static constexpr Option kUndo{"undo", &AlignCall::undo};
@@ -46,19 +46,19 @@ BoundParameters<AlignCall> align_parameters() {
       .add("undo", AlignCall::kUndo, "manifest of an align run, whose motion is given back");
 }
 
-/// Finding the motion, beside reading the frames to be kept before and to be moved after it.
+/// Progress at which the fit starts, after the frames are stored, and ends, before they are moved.
 constexpr double kFittingFrom = 0.2;
 constexpr double kFittingTo = 0.9;
 
-/// A sequence that moves otherwise, and the motion that makes the difference.
+/// A moved sequence and the motion between it and the given one.
 struct Moved {
   std::shared_ptr<const FrameSource> frames;
   std::vector<RigidTransform> motion;
-  /// Of the stillest vertices, where those told it; degrees.
+  /// Disagreement of the stillest vertices in degrees, if they determined the motion.
   std::optional<double> disagreement = {};
 };
 
-/// Says where frames that motion is to be given back to have one of the whole mesh.
+/// Warns if frames still move as a whole before a motion is given back to them.
 void warn_of_motion_before(const FrameSource& given, const Invocation& invocation) {
   const WholeMotion whole = whole_motion(given, invocation.context.part(0, 0));
   if (!whole.moves()) return;
@@ -69,7 +69,7 @@ void warn_of_motion_before(const FrameSource& given, const Invocation& invocatio
                   "the motion was taken out of");
 }
 
-/// Of the box around the rest pose.
+/// Extent of the rest pose along each axis.
 Eigen::Vector3d extent_of(const FrameSource& sequence) {
   const Positions& rest = sequence.rest();
   return (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).transpose();
@@ -79,17 +79,18 @@ Positions places_on(const FrameSource& sequence) {
   return sequence.rest()(spread_vertices(sequence.vertices()), Eigen::all);
 }
 
-/// Whether a sequence is turned against the one that a motion was taken out of, by what is known of
-/// that: places of the same vertices, or how far it reaches along each axis.
+/// Whether a sequence is turned against the sequence that the motion was taken out of. Compares
+/// places of the same vertices or, for earlier manifests and other meshes, the extents along the
+/// axes.
 bool is_turned(const KeptMotion& kept, const FrameSource& sequence) {
   constexpr double kOfSize = 0.1;
   const Eigen::Vector3d was = *kept.extent, now = extent_of(sequence);
   if (kept.places && kept.vertices == sequence.vertices()) {
-    constexpr double kTurned = 45;  // degrees; another character's face is not turned by so much
+    constexpr double kTurned = 45;  // degrees; faces of other characters are turned by less
     const Positions places = places_on(sequence);
     const RigidTransform turn = rigid_fit(*kept.places, places);
     const double off = (turn.apply(*kept.places) - places).rowwise().norm().maxCoeff();
-    // Numbered otherwise they fit nowhere.
+    // Vertices with another numbering do not fit.
     if (off < kOfSize * was.norm()) return turn.angle() > kTurned;
   }
   const Eigen::Vector3d turned(was.x(), was.z(), was.y());
@@ -97,8 +98,8 @@ bool is_turned(const KeptMotion& kept, const FrameSource& sequence) {
   return apart > kOfSize * was.norm() && (now - turned).norm() < apart / 2;
 }
 
-/// Says where a motion is of a mesh in another unit, or with another axis up: its translations and
-/// axes are that one's.
+/// Warns if a motion belongs to a mesh in another unit or with another axis up. Its translations
+/// and axes are relative to that mesh.
 void warn_of_other_space(const KeptMotion& kept, const Invocation& invocation) {
   if (!kept.extent) return;
   const NamedData& input = invocation.input("sequence");
@@ -204,7 +205,7 @@ Operation align_operation() {
     const FieldSequence& sequence = invocation.get<FieldSequence>("sequence");
     const double of_frames =
         sequence.is_in_memory() ? frame_bytes(*sequence.frames) : stored_bytes(*sequence.frames);
-    // In memory at once: the pose that is read, moved, compared and written.
+    // Poses in memory at the same time: read, moved, compared and written.
     constexpr double kPoses = 4;
     return of_frames + kPoses * frame_bytes(*sequence.frames) / sequence.frames->frames();
   };

@@ -17,8 +17,9 @@ namespace mimetra {
 
 struct FieldSequence;
 
-/// How a member of an option struct is a parameter: its kind, the `value` that it has as one, and
-/// `read`, which gives the value of a call. A type without a kind is no parameter's.
+/// Maps the type of an option struct's member to a parameter of kind kKind. `value` converts a
+/// member to a parameter's value, and `read` returns the value of a call. Types without a kind
+/// cannot be parameters.
 template <typename Value>
 struct ParameterType {};
 
@@ -67,7 +68,7 @@ struct ParameterType<Length> {
   }
 };
 
-/// An empty list is none.
+/// An empty list is stored as no value.
 template <>
 struct ParameterType<std::vector<int>> {
   static constexpr ParameterKind kKind = ParameterKind::integer_list;
@@ -81,7 +82,7 @@ struct ParameterType<std::vector<int>> {
   }
 };
 
-/// An empty text is none.
+/// An empty text is stored as no value.
 template <>
 struct ParameterType<std::string> {
   static constexpr ParameterKind kKind = ParameterKind::text;
@@ -102,17 +103,17 @@ struct ParameterType<std::filesystem::path> {
   }
 };
 
-/// What a parameter can be bound to; of enums only those whose values have names.
+/// Type of a member that can be a parameter. Enums need names for their values.
 template <typename Value>
 concept ParameterMember = requires {
   ParameterType<Value>::kKind;
 };
 
-/// All of them but choices, of which one is always made.
+/// All of these types except enums, which always have a value.
 template <typename Value>
 concept OptionalMember = ParameterMember<Value> && !NamedChoice<Value>;
 
-/// None where none is given.
+/// Reads an empty optional if no value is given.
 template <OptionalMember Value>
 struct ParameterType<std::optional<Value>> {
   static constexpr ParameterKind kKind = ParameterType<Value>::kKind;
@@ -125,20 +126,20 @@ struct ParameterType<std::optional<Value>> {
   }
 };
 
-/// Parameters of an operation, each bound to a member of a struct of options, whose default, range
-/// and unit it has. What is declared and what is read is one list.
+/// Parameters of an operation, each bound to a member of an options struct. The member gives the
+/// default, range and unit. One list declares and reads the parameters.
 template <typename Options>
 class BoundParameters {
  public:
-  /// How a parameter's value comes into the struct, where files that it names must fit a sequence;
-  /// without one they are not read, and what they hold is empty.
+  /// Copies a parameter's value into the struct. Files that the parameter names must fit the
+  /// sequence. Without a sequence, files are not read and their contents stay empty.
   using Apply = std::function<void(const Parameters&, Options&, const FieldSequence*)>;
   struct Entry {
     Parameter parameter;
     Apply apply;
   };
 
-  /// `defaults` are those of the parameters.
+  /// `defaults` become the defaults of the parameters.
   explicit BoundParameters(Options defaults = {}) : defaults_(std::move(defaults)) {}
 
   template <ParameterMember Value>
@@ -152,7 +153,7 @@ class BoundParameters {
                });
   }
 
-  /// A flag that says the opposite of its member.
+  /// Adds a flag with the opposite meaning of its member.
   BoundParameters& add_opposite(const std::string& name, const Option<Options, bool>& option,
                                 std::string help) {
     Parameter parameter = declaration<bool>(name, option, std::move(help));
@@ -163,8 +164,8 @@ class BoundParameters {
                });
   }
 
-  /// One of the values of an enum, or a file, of which `read` makes a value. The member is a
-  /// variant of both, or an optional one.
+  /// Adds a parameter that takes an enum's value or a file, from which `read` makes a value. The
+  /// member is a variant of both, or an optional variant.
   template <NamedChoice Word, typename Value, typename Member>
   BoundParameters& add_word_or_file(
       const std::string& name, const Option<Options, Member>& option, std::string help,
@@ -184,7 +185,7 @@ class BoundParameters {
                });
   }
 
-  /// The parameters of a part of the struct, in their order.
+  /// Adds the parameters of a part of the struct, in their order.
   template <typename Part>
   BoundParameters& add(Part Options::*member, const BoundParameters<Part>& part) {
     for (const auto& entry : part.entries()) {
@@ -197,13 +198,13 @@ class BoundParameters {
     return *this;
   }
 
-  /// Those of another list, after these.
+  /// Appends the parameters of another list.
   BoundParameters& add(const BoundParameters& more) {
     entries_.insert(entries_.end(), more.entries_.begin(), more.entries_.end());
     return *this;
   }
 
-  /// A parameter that is not like its member. `apply` reads it, and may leave out the sequence.
+  /// Adds a parameter that differs from its member. `apply` reads it, and may omit the sequence.
   template <typename Function>
   BoundParameters& add(Parameter parameter, Function apply) {
     if constexpr (std::is_convertible_v<Function, Apply>) {
@@ -217,7 +218,7 @@ class BoundParameters {
     return *this;
   }
 
-  /// Puts all that stand nowhere yet under a heading of the help.
+  /// Puts all parameters without a heading under this heading of the help.
   BoundParameters& under(const std::string& group) {
     for (Entry& entry : entries_) {
       if (entry.parameter.group.empty()) entry.parameter.group = group;
@@ -225,7 +226,7 @@ class BoundParameters {
     return *this;
   }
 
-  /// What the short help says of the last one.
+  /// Sets the short help of the last parameter.
   BoundParameters& brief(const std::string& text) {
     entries_.back().parameter.brief = text;
     return *this;
@@ -237,7 +238,7 @@ class BoundParameters {
     return parameters;
   }
 
-  /// The struct with the values of a call, as Apply.
+  /// Returns the struct with the values of a call; `sequence` as for Apply.
   Options read(const Parameters& parameters, const FieldSequence* sequence = nullptr) const {
     Options options = defaults_;
     for (const Entry& entry : entries_) entry.apply(parameters, options, sequence);

@@ -31,7 +31,7 @@ void check_kind(const Operation& operation, const Input& input, const Data& data
 
 namespace {
 
-/// Reads one input after the other.
+/// Reads the inputs one after the other.
 class Loader {
  public:
   Loader(const OperationTable& table, const Parameters& parameters, const Log& log, bool may_stream)
@@ -59,7 +59,7 @@ class Loader {
     return std::move(read.value);
   }
 
-  /// The mesh that region sets are for, if the value has one.
+  /// Takes the mesh for region sets from a value; false if the value has none.
   bool know(const Data& data) {
     if (const auto* sequence = std::get_if<FieldSequence>(&data)) {
       return know(sequence->frames->vertices(), sequence->frames->triangles());
@@ -80,7 +80,7 @@ class Loader {
     return true;
   }
 
-  /// The manifest; and what the run read, read again.
+  /// Reads a manifest, and the inputs of its run.
   NamedData run(const std::string& text, const Context& context) {
     RunRead read;
     read.record = read_run(text);
@@ -145,7 +145,7 @@ LoadedInputs load_inputs(const OperationTable& table, const Operation& operation
   for (const Input& input : operation.inputs) {
     if (input.kind != DataKind::regions) load(input);
   }
-  // Regions are for the first mesh.
+  // Regions belong to the first input with a mesh.
   const auto has_mesh = [&](const Input& input) {
     const auto values = loaded.data.find(input.name);
     return values != loaded.data.end() && !values->second.empty() &&
@@ -171,7 +171,7 @@ LoadedInputs load_inputs(const OperationTable& table, const Operation& operation
 }
 
 std::string name_of_output(const Input& input, const std::string& name) {
-  if (input.kind == DataKind::model) return name;  // a person's own
+  if (input.kind == DataKind::model) return name;  // name of a person
   const bool is_pattern = name.find_first_of("*%") != std::string::npos;
   ModelSpec spec = is_pattern ? ModelSpec{name, {}, {}} : ModelSpec::parse(name);
   if (spec.path.stem() == "*") spec.path = spec.path.parent_path();
@@ -182,7 +182,7 @@ std::string name_of_output(const Input& input, const std::string& name) {
 
 namespace {
 
-/// As numbers that ranks send: a double holds 32 bits and not 64.
+/// Ranks send hashes as numbers. A double holds 32 bits exactly, but not 64.
 constexpr int kHalves = 2;
 constexpr int kHalfBits = 32;
 
@@ -223,11 +223,11 @@ void check_same_inputs(const std::vector<std::filesystem::path>& inputs, const C
 
 namespace {
 
-// Reading and writing as shares of the progress.
+// Shares of reading and writing in the progress.
 constexpr double kReadingShare = 0.3;
 constexpr double kWritingShare = 0.2;
 
-/// One spelling for each place.
+/// Returns one spelling of a path for each place.
 std::filesystem::path place_of(const std::filesystem::path& path) {
   std::error_code unreadable;
   std::filesystem::path place = weakly_canonical(absolute(path), unreadable);
@@ -235,14 +235,14 @@ std::filesystem::path place_of(const std::filesystem::path& path) {
   return place.has_filename() ? place : place.parent_path();
 }
 
-/// A sequence with the fields that nobody asked for.
+/// Returns a sequence with its optional fields.
 FieldSequence with_more_fields(const NamedData& value) {
   FieldSequence sequence = std::get<FieldSequence>(value.data);
   sequence.fields.insert(sequence.fields.end(), value.more_fields.begin(), value.more_fields.end());
   return sequence;
 }
 
-/// Throws IoError for what is given where a word could be, and is neither one nor a path.
+/// Throws IoError for a text that is neither a path nor one of the words that may replace it.
 void check_words(const CallRequest& request) {
   for (const Parameter& parameter : request.operation->parameters) {
     if (parameter.kind != ParameterKind::file || parameter.choices.empty()) continue;
@@ -256,7 +256,7 @@ void check_words(const CallRequest& request) {
   }
 }
 
-/// Does `work`; where it cannot read a file, a word that was mistaken for one is what is wrong.
+/// Calls `work`. If that cannot read a file, reports a mistyped word first.
 template <typename Work>
 void reading_files(const CallRequest& request, const Work& work) {
   try {
@@ -313,7 +313,7 @@ void Call::check_exclusions(const HasValue& has_value) const {
   if (found) throw UsageError(*found);
 }
 
-/// They would be ignored.
+/// Refuses parameters of files that would be ignored.
 void Call::check_parameters_of_files() const {
   std::vector<Parameter> applying = request_.operation->parameters;
   for (const Input& input : request_.operation->inputs) {
@@ -340,7 +340,7 @@ void Call::check_parameters_of_files() const {
   }
 }
 
-/// Refuses, before anything is read, what cannot be written.
+/// Refuses outputs that cannot be written, before anything is read.
 void Call::check_outputs() const {
   if (helps_another()) return;
   const auto is_several = [](const auto& input) { return input.second.size() > 1; };
@@ -357,7 +357,8 @@ void Call::check_outputs() const {
   if (request_.manifest) check_manifest();
 }
 
-/// Before anything is read: what it would replace is a manifest that stands for itself.
+/// Checks the manifest's path before anything is read. Refuses to replace anything but a separate
+/// manifest of the same operation.
 void Call::check_manifest() const {
   const auto& [path, overwrite] = *request_.manifest;
   const bool may_replace =
@@ -372,7 +373,7 @@ void Call::check_manifest() const {
 
 std::vector<std::string> Call::repeated_names() const {
   std::vector<std::string> names;
-  // Where no output is one for each of them, an input needs no name.
+  // Inputs need names only if an output has one value for each.
   if (std::ranges::none_of(request_.operation->outputs, &Output::repeated)) return names;
   for (const Input& input : request_.operation->inputs) {
     const auto values = invocation_.inputs.find(input.name);
@@ -384,8 +385,8 @@ std::vector<std::string> Call::repeated_names() const {
   return names;
 }
 
-/// What was read, and the folders that were named: a new file in one of those would be read next
-/// time.
+/// The files that were read and the folders that the user gave. A new file in such a folder would
+/// be read next time.
 Call::Paths Call::inputs_that_stay() const {
   Paths paths = finished_.inputs;
   for (const auto& [input, names] : finished_.named_inputs) {
@@ -397,10 +398,10 @@ Call::Paths Call::inputs_that_stay() const {
   return paths;
 }
 
-/// Where the values of the outputs go, now that names and files of the inputs are known.
+/// Sets the paths of the outputs, now that names and files of the inputs are known.
 void Call::place_outputs() {
   const std::vector<std::string> names = repeated_names();
-  // What people typed, by where it is.
+  // The user's spelling by place.
   std::map<std::filesystem::path, std::filesystem::path> places, folders;
   const auto claim = [&places](const std::filesystem::path& path) {
     if (places.emplace(place_of(path), path).second) return;
@@ -509,7 +510,7 @@ void Call::give(const std::string& input, NamedData data) {
 
 const Outcome& Call::run() {
   const Stopwatch stopwatch;
-  // Hosts may have given and asked for more since.
+  // Hosts may have given inputs and requested outputs since the constructor.
   check_exclusions([this](const std::string& name) {
     return invocation_.has_input(name) || invocation_.wants(name);
   });
@@ -533,11 +534,11 @@ void Call::write_values(const Output& output, const Paths& targets, const std::s
   const bool is_folder = format.has(Format::kFolder);
   for (std::size_t i = 0; i < made->second.size(); ++i) {
     const auto& target = targets.at(i);
-    // With a slash at its end a folder's name may have a dot.
+    // A folder's name may contain a dot, so it ends in a slash.
     WriteRequest write{is_folder ? target / "" : target, request_.parameters, asked.overwrite};
     write.inputs = inputs_that_stay();
     write.together = &together;
-    // What accompanies another output stands in that one's manifest.
+    // The main output's manifest covers its companions.
     if (request_.destinations.contains(output.name)) {
       write.extra.emplace_back(manifest_name(target, is_folder), manifest);
     }
@@ -564,7 +565,7 @@ void Call::write() {
   // An interrupted run leaves all of its outputs or none.
   PendingOutputs together(false, inputs_that_stay());
   if ((writes() || request_.manifest) && !helps_another()) write_outputs(together);
-  // Nothing stands of a run that another process could not finish.
+  // If another process fails, no output appears.
   invocation_.context.ranks().meet([this] {
     request_.context.report(1);
     return true;

@@ -12,98 +12,98 @@
 
 namespace mimetra {
 
-/// Where something is written.
+/// Where a value is written.
 struct Destination {
   std::filesystem::path path;
-  /// Replace what an earlier run wrote.
+  /// Replace outputs of an earlier run.
   bool overwrite = false;
 };
 
-/// What a host asks of an operation.
+/// A host's request for one call of an operation.
 struct CallRequest {
   const Operation* operation = nullptr;
-  /// Of OperationTable::parameters_of() the operation.
+  /// Parameters that OperationTable::parameters_of() declares for the operation.
   Parameters parameters = Parameters();
   /// Values that the host has, by name of the input.
   std::map<std::string, std::vector<NamedData>> given = {};
-  /// What is read when the call is loaded, as people name it, by name of the input; comes after
-  /// given values.
+  /// Texts from which load() reads inputs, by name of the input. These values follow the given
+  /// ones.
   std::map<std::string, std::vector<std::string>> named = {};
-  /// Optional outputs whose values are asked for; needed ones always are.
+  /// Optional outputs to compute; required outputs are always computed.
   std::set<std::string> wanted = {};
-  /// Outputs that are written, and where; with their companions.
+  /// Outputs to write, with their companions, and their paths.
   std::map<std::string, Destination> destinations = {};
-  /// A file for the manifest, which also accompanies every output that is written. A manifest of
-  /// the same operation may be replaced, unless it accompanies an output.
+  /// File for the manifest; each written output also gets one beside it. A manifest of the same
+  /// operation may be replaced, unless it accompanies an output.
   std::optional<Destination> manifest = {};
-  /// Frames of streamed inputs may be read when they are needed; otherwise all are in memory.
+  /// Frames of streamed inputs may be read on demand; otherwise all frames are in memory.
   bool may_stream = false;
-  /// Several ranks all make this call, and the first one writes. Notes go to the log, as warnings.
+  /// All ranks make the same call, and rank 0 writes. Notes become warnings of the log.
   Context context = {};
   Log log = {};
-  /// For the manifest: the command line, and files that were read for it besides the inputs.
+  /// For the manifest: the command line, and files besides the inputs that were read for it.
   std::vector<std::string> arguments = {};
   std::vector<std::filesystem::path> files = {};
 };
 
-/// Throws UsageError unless a value can be given to an input of an operation.
+/// Throws UsageError if an input of an operation does not take the value.
 void check_kind(const Operation& operation, const Input& input, const Data& data);
 
-/// What files were read, for the manifest.
+/// Values of the inputs, and the files that were read, for the manifest.
 struct LoadedInputs {
   std::map<std::string, std::vector<NamedData>> data;
   std::vector<std::filesystem::path> files;
 };
 
-/// Reads the inputs of an operation from what the user named (`names`, by name of the input),
-/// beside those that a host has already (`given`). `log` receives the readers' notes as warnings.
-/// Sequences are read into memory; with `may_stream`, those of streamed inputs are not. Throws what
-/// the readers throw.
+/// Reads the inputs of an operation from the user's texts (`names`, by name of the input). `given`
+/// contains values that the host has already. `log` receives the readers' notes as warnings.
+/// Sequences are read into memory, except streamed inputs with `may_stream`. Throws what the
+/// readers throw.
 LoadedInputs load_inputs(const OperationTable& table, const Operation& operation,
                          const Parameters& parameters,
                          const std::map<std::string, std::vector<std::string>>& names,
                          const Log& log, std::map<std::string, std::vector<NamedData>> given = {},
                          bool may_stream = false, const Context& context = {});
 
-/// What the output for one value of a repeated input is called, where `name` is what was read: a
-/// person of a model has a name, all else that of its file or folder. Throws UsageError for none.
+/// Name of the output for one value of a repeated input. Returns a model's own `name`, and the stem
+/// of other files or folders `name`. Throws UsageError if that is empty.
 std::string name_of_output(const Input& input, const std::string& name);
 
-/// Compares the files of all ranks with the first one's by their number, sizes, and first and last
-/// 64 kB. Throws MismatchError on ranks that have others.
+/// Compares the files of all ranks with the files of rank 0: their number, sizes, and first and
+/// last 64 kB. Throws MismatchError on ranks with different files.
 void check_same_inputs(const std::vector<std::filesystem::path>& inputs, const Context& context);
 
-/// One call of an operation, from what a host asks for to what stands on disk: checks, inputs,
-/// wanted outputs, and the manifest that accompanies what is written. load(), run() and write() in
-/// this order.
+/// One call of an operation, from a host's request to files on disk. It makes checks, reads inputs,
+/// and writes outputs with their manifests. Call load(), run() and write() in this order.
 class Call {
  public:
-  /// Throws UsageError for an input that is missing or of another kind, for options that
-  /// exclude each other, for a parameter of files that applies to none, and for an output that no
-  /// writer takes; OutputError for one that cannot be written. Nothing is read yet.
+  /// Checks the request without reading the inputs. Throws UsageError for an input that is missing
+  /// or of the wrong kind, and for options that exclude each other. Throws UsageError for a
+  /// parameter of files that applies to no file, and for an output that no format can write. Throws
+  /// OutputError for an output that cannot be written.
   Call(const OperationTable& table, CallRequest request);
 
-  /// Reads the inputs. Throws what the readers throw, and UsageError where two outputs would be
+  /// Reads the inputs. Throws what the readers throw, and UsageError if two outputs would be
   /// written to one place.
   void load();
-  /// Throws and warns of what a run would refuse later: what the operation foresees, and files
-  /// beside the outputs that would be refused where the run's have another content. \pre load()
+  /// Reports what a run would refuse later, by exceptions and warnings. Covers the operation's own
+  /// checks, and files beside the outputs that would have other contents. \pre load()
   void foresee() const;
-  /// What the operation is going to get. \pre load()
+  /// Inputs and parameters of the operation's run. \pre load()
   const Invocation& invocation() const { return invocation_; }
-  /// Also asks for an output's value.
+  /// Requests the value of a further output.
   void want(const std::string& output);
-  /// Also gives an input a value, in place of its others.
+  /// Gives an input a value, which replaces its other values.
   void give(const std::string& input, NamedData data);
 
   /// Runs the operation. Throws what it throws, and MismatchError on a process that reads other
-  /// inputs than the first. \pre load()
+  /// inputs than rank 0. \pre load()
   const Outcome& run();
-  /// Writes the outputs that have a path, each with the run's manifest, and the manifest. Throws
-  /// what the writers throw; Cancelled while nothing stands yet. \pre run()
+  /// Writes the outputs that have a path, each with the run's manifest, and the separate manifest.
+  /// Throws what the writers throw, and Cancelled while no output is in place. \pre run()
   void write();
 
-  /// True where something is written.
+  /// True if any output is written.
   bool writes() const { return !paths_.empty(); }
   Outcome& outcome() { return outcome_; }
   const FinishedRun& finished() const { return finished_; }

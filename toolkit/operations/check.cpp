@@ -21,7 +21,7 @@ namespace mimetra {
 namespace {
 
 struct CheckCall {
-  /// Fail where there is a warning.
+  /// Fail if there is a warning.
   bool strict = false;
 
   static constexpr Option kStrict{"strict", &CheckCall::strict};
@@ -32,12 +32,12 @@ BoundParameters<CheckCall> check_parameters() {
   return list.add("strict", CheckCall::kStrict, "fail where there is a warning (exit code 4)");
 }
 
-/// "3 WHAT, the first is 17".
+/// Adds the first of the found numbers: "3 WHAT, the first is 17".
 std::string from(const std::vector<int>& found, const std::string& what) {
   return what + ", the first is " + std::to_string(found.front());
 }
 
-/// Reads all frames.
+/// Warnings about the frames; reads all of them.
 std::vector<std::string> frame_warnings(const std::shared_ptr<const FrameSource>& frames,
                                         const Context& context) {
   const FrameSource& sequence = *frames;
@@ -75,7 +75,7 @@ std::vector<std::string> frame_warnings(const std::shared_ptr<const FrameSource>
   return warnings;
 }
 
-/// What is legal but often a mistake.
+/// Warnings about legal meshes that are often mistakes.
 std::vector<std::string> mesh_warnings(const FrameSource& sequence) {
   const MeshReport mesh = inspect(sequence.rest(), sequence.connectivity());
   std::vector<std::string> warnings;
@@ -101,8 +101,7 @@ std::vector<std::string> mesh_warnings(const FrameSource& sequence) {
   return warnings;
 }
 
-/// What is odd about the numbering against the mesh to be matched, and that it is the same mesh.
-/// Throws MismatchError for another one.
+/// Warns if the mesh is numbered differently from `match`. Throws MismatchError for another mesh.
 std::vector<std::string> numbering_warnings(const Invocation& invocation) {
   const auto* reference = invocation.find<FieldSequence>("match");
   if (!reference) return {};
@@ -128,7 +127,7 @@ Outcome run_check(const Invocation& invocation) {
   found.insert(found.end(), own.begin(), own.end());
   const std::vector<std::string> of_frames = frame_warnings(frames, invocation.context);
   found.insert(found.end(), of_frames.begin(), of_frames.end());
-  // What reading said is not said again.
+  // Reading has reported its notes already.
   std::vector<std::string> warnings = input.origin.notes;
   warnings.insert(warnings.end(), found.begin(), found.end());
   if (!warnings.empty() && check_parameters().read(invocation.parameters).strict) {

@@ -50,7 +50,7 @@ Color color_of(const Vector& lab) {
   return {byte(rgb[0]), byte(rgb[1]), byte(rgb[2])};
 }
 
-/// The way through Oklab that even_color takes, with the length to each corner.
+/// Polyline through Oklab for even_color(), with the length up to each corner.
 struct Path {
   std::vector<Vector> corners;
   std::vector<double> lengths = {0};
@@ -73,7 +73,7 @@ struct Path {
   }
 };
 
-/// Place of each vertex's category among those there are; -1 for none.
+/// Rank of each vertex's category among the categories present; -1 for none.
 std::vector<int> ranks_of(const std::vector<int>& categories) {
   std::map<int, int> rank;
   for (const int category : categories) {
@@ -111,7 +111,7 @@ Color even_color(double share) {
 }
 
 std::vector<Color> category_colors(const std::vector<int>& categories, const Triangles& triangles) {
-  // The first seven by turns; the others where all of them stand around a category.
+  // The first seven colours alternate. The others serve categories that touch all seven.
   constexpr std::size_t kUsual = 7;
   constexpr std::array<Color, 11> kPalette = {{{230, 159, 0},
                                                {86, 180, 233},
@@ -130,7 +130,8 @@ std::vector<Color> category_colors(const std::vector<int>& categories, const Tri
     if (rank < 0) continue;
     std::array<int, kPalette.size()> used{};
     for (const int neighbor : lower) ++used[chosen[neighbor]];
-    // The least used among neighbours; starting at another colour each time spreads them.
+    // Takes the colour that neighbours use least. Starting at another colour each time spreads
+    // colours.
     std::size_t best = static_cast<std::size_t>(rank) % kUsual;
     for (std::size_t i = 0; i < kUsual; ++i) {
       const std::size_t candidate = (static_cast<std::size_t>(rank) + i) % kUsual;
@@ -167,7 +168,8 @@ Field region_color_field(const Field& region, const Connectivity& connectivity) 
   const Polygons& polygons = connectivity.polygons;
   Eigen::MatrixXd of_faces(polygons.size(), 3);
   for (int face = 0; face < polygons.size(); ++face) {
-    std::map<int, std::pair<int, VertexIndex>> corners;  // of each region: how many, and one
+    // By region: number of corners, and one of them.
+    std::map<int, std::pair<int, VertexIndex>> corners;
     for (int c = polygons.offsets[face]; c < polygons.offsets[face + 1]; ++c) {
       const VertexIndex vertex = polygons.corners[c];
       auto& [count, of_region] = corners[labels[static_cast<std::size_t>(vertex)]];

@@ -27,7 +27,7 @@ BoundParameters<UnitChange> convert_parameters() {
            "turn about x, so that what is up along y is up along z (y-to-z), or back (z-to-y)");
 }
 
-/// ", times 0.001, turned y-to-z".
+/// Describes a change of units: ", positions times 0.001, turned y-to-z".
 std::string said(const UnitChange& change) {
   std::string text;
   if (change.scale != 1) text += ", positions times " + readable(change.scale);
@@ -35,7 +35,7 @@ std::string said(const UnitChange& change) {
   return text;
 }
 
-/// What faces have in one mesh and in no form in the other, in words.
+/// Parts of faces, in words, that one mesh has and the other lacks entirely.
 std::vector<std::string> parts_of_faces(const Connectivity& faces, const Connectivity& others) {
   std::vector<std::string> parts;
   if (!faces.texture.coordinates.empty() && others.texture.coordinates.empty()) {
@@ -52,7 +52,7 @@ std::vector<std::string> parts_of_faces(const Connectivity& faces, const Connect
   return parts;
 }
 
-/// The frames on another mesh, by which a model's stay driven by its expressions.
+/// Returns the frames on another mesh. Expressions still drive a model's frames.
 std::shared_ptr<const FrameSource> on_mesh(const std::shared_ptr<const FrameSource>& frames,
                                            const std::shared_ptr<const Connectivity>& connectivity,
                                            const std::vector<VertexIndex>& vertices) {
@@ -61,8 +61,7 @@ std::shared_ptr<const FrameSource> on_mesh(const std::shared_ptr<const FrameSour
   return std::make_shared<const Animation>(animation->renumbered(connectivity, vertices));
 }
 
-/// The sequence with the vertices and faces of `reference`. Throws MismatchError where it is
-/// another mesh.
+/// Returns the sequence with the vertices and faces of `match`. Warns about parts that are lost.
 FieldSequence matched(const Invocation& invocation, const NamedData& input,
                       const Renumbering& found) {
   const auto& given = std::get<FieldSequence>(input.data);
@@ -87,7 +86,8 @@ FieldSequence matched(const Invocation& invocation, const NamedData& input,
   return made;
 }
 
-/// How the sequence is numbered against `match`; none where nothing is to be matched.
+/// Returns how the sequence is numbered against `match`; empty without `match`. Throws
+/// MismatchError for another mesh.
 std::optional<Renumbering> renumbering_of(const Invocation& invocation, const NamedData& input) {
   const auto* reference = invocation.find<FieldSequence>("match");
   if (!reference) return {};
@@ -100,7 +100,7 @@ std::optional<Renumbering> renumbering_of(const Invocation& invocation, const Na
                       invocation.input("match").name + ")");
 }
 
-/// Refuses what weights have no part in, where they are to be written instead of poses.
+/// Refuses options about positions and vertices if weights are written instead of poses.
 void check_weights(const Invocation& invocation, const FrameSource& frames) {
   const auto paths = invocation.wanted.find("out");
   if (paths == invocation.wanted.end() || paths->second.empty()) return;
@@ -122,7 +122,7 @@ void check_weights(const Invocation& invocation, const FrameSource& frames) {
   check_live_link(invocation, "out", animation->model().expressions().names);
 }
 
-/// Frames that several processes read for the first one, which writes them.
+/// Returns frames that several processes read together; rank 0 stores and writes them.
 std::shared_ptr<const FrameSource> read_by_all(std::shared_ptr<const FrameSource> frames,
                                                const Context& context) {
   if (context.ranks().rank() == 0) return stored(std::move(frames), context);

@@ -21,7 +21,7 @@
 
 namespace mimetra {
 
-/// What goes into operations and comes out of them.
+/// Kind of a value that operations take or return.
 enum class DataKind {
   sequence,
   model,
@@ -34,30 +34,30 @@ enum class DataKind {
   document
 };
 
-/// "sequence", as in the JSON of the operations table.
+/// Name of a kind in the JSON of the operations table, such as "sequence".
 std::string_view kind_name(DataKind kind);
 
-/// Regions and the sequence they are shown on (empty for regions that were read).
+/// Regions and the sequence on which they are shown (empty for regions that were read).
 struct RegionData {
   Regions regions;
   FieldSequence fields;
-  /// Faces of those that were made for a mesh without a sequence, or null.
+  /// Faces of the mesh, for regions that were made without a sequence; or null.
   std::shared_ptr<const Connectivity> faces = {};
 };
 
-/// Rows of numbers under column names; an empty cell is nothing that can be measured.
+/// Rows of numbers under column names. An empty cell has no measurable value.
 struct Table {
   std::vector<std::string> columns;
   std::vector<std::vector<std::optional<double>>> rows;
-  /// One more column, the last, that holds words: its name, or none, and a word for each row, ""
-  /// for nothing.
+  /// Name of an additional last column of words; empty if there is none. Each row has a word, or
+  /// "".
   std::string word_column = {};
   std::vector<std::string> words = {};
-  /// What a picture of the table shows; by default all columns against the first.
+  /// Contents of a plot of the table. Default: all columns against the first.
   struct Picture {
-    std::string x, y;  ///< columns
+    std::string x, y;  ///< names of columns
     std::string title, x_label, y_label;
-    std::string without_word = {};  ///< name of the line of rows without a word
+    std::string without_word = {};  ///< label of the line of rows without a word
   };
   std::optional<Picture> picture = {};
 
@@ -66,31 +66,31 @@ struct Table {
   std::string json() const;
 };
 
-/// A model: one person, or with identities; perhaps with a performance of it.
+/// A model of one person, or with identities, and possibly a performance of it.
 struct ModelData {
   MorphableModel model;
   WeightTrack performance = {};
-  /// The model's vertex of each of iBUG's landmarks that it has.
+  /// Number and vertex of each iBUG landmark that the model has.
   std::vector<std::pair<int, VertexIndex>> landmarks = {};
 };
 
-/// One picture, or several over time, each drawn when it is needed.
+/// One picture, or several over time, each drawn on demand.
 struct Pictures {
   int count = 0;
-  std::function<Image(int)> draw;  ///< may be called from several threads
-  Eigen::VectorXd times = {};      ///< seconds (count), or none
-  /// A video whose sound belongs to them, at these times, or none.
+  std::function<Image(int)> draw;  ///< safe to call from several threads
+  Eigen::VectorXd times = {};      ///< seconds (count), or empty
+  /// Video with the sound of the pictures, at these times; or empty.
   std::filesystem::path sound = {};
 
   static Pictures of(Image image);
 };
 
-/// Text that stands for itself: a page for a browser, a script.
+/// Text for direct use, such as a page for a browser or a script.
 struct Document {
   std::string text;
 };
 
-/// One value of the kind at the same place in DataKind.
+/// One value, with the alternatives in the order of DataKind.
 using Data = std::variant<FieldSequence, ModelData, Components, RegionData, Table, LandmarkTrack,
                           FittedCoefficients, Pictures, Document>;
 
@@ -98,36 +98,36 @@ DataKind kind_of(const Data& data);
 
 struct RunRead;
 
-/// What was noticed where a value was read or made, beside it.
+/// Facts about the origin of a value.
 struct Origin {
-  /// A model drives the sequence: its rest pose is its neutral.
+  /// A model drives the sequence, so its rest pose is its neutral.
   bool model_driven = false;
-  /// Where a model was read; empty for one that was made.
+  /// Path from which a model was read; empty for a model that was made.
   std::filesystem::path path = {};
-  /// What the frames of landmarks show (F images), or null.
+  /// Images of the frames of landmarks (F), or null.
   std::shared_ptr<const ImageSequence> images = {};
-  /// What was noticed in each frame of landmarks (F, "" for nothing), or none.
+  /// Note on each frame of landmarks (F, "" for no note), or empty.
   std::vector<std::string> frame_notes = {};
-  /// What was noticed while it was read, which was said by then.
+  /// Notes of the reader. They have already been reported.
   std::vector<std::string> notes = {};
-  /// The run that wrote a manifest.
+  /// The run that a manifest records.
   std::shared_ptr<const RunRead> run = {};
 };
 
-/// A value and what it is called in messages and output names.
+/// A value and its name in messages and output names.
 struct NamedData {
   std::string name;
   Data data;
   Origin origin = {};
-  /// Text that is written beside it, by the end of its name: ".correspondence.json" becomes
-  /// NAME.correspondence.json beside a file NAME.EXT, and correspondence.json in a folder.
+  /// Text files to write beside the value, by the end of their names. ".correspondence.json"
+  /// becomes NAME.correspondence.json beside a file NAME.EXT, and correspondence.json in a folder.
   std::map<std::string, std::string> beside = {};
-  /// Fields of a sequence that nobody asked for: written where the format holds fields, and left
-  /// out without a word elsewhere.
+  /// Optional fields of a sequence. Formats with fields write them; other formats drop them
+  /// silently.
   std::vector<Field> more_fields = {};
 };
 
-/// The one person, or the average, of a value that is a model.
+/// Returns the one person, or the average, of a model.
 const BlendshapeModel& person_of(const NamedData& value);
 
 }  // namespace mimetra

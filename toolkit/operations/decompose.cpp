@@ -29,7 +29,7 @@ const BoundParameters<DecomposeCall>& decompose_parameters() {
   return list;
 }
 
-/// Each component's weight over time.
+/// Returns each component's weight over time.
 Table weight_table(const Components& components, const Eigen::VectorXd& times) {
   WeightTrack track{{}, components.weights, times};
   for (int k = 0; k < components.count(); ++k) {
@@ -38,7 +38,7 @@ Table weight_table(const Components& components, const Eigen::VectorXd& times) {
   return weight_table(track);
 }
 
-/// A sequence as far as it was decomposed: vertices that are not `inside` stay at rest.
+/// The part of a sequence that was decomposed: vertices that are not `inside` stay at rest.
 class MovingInside : public FrameSource {
  public:
   MovingInside(std::shared_ptr<const FrameSource> whole, std::vector<bool> inside)

@@ -59,7 +59,7 @@ std::string text_of(const std::vector<EvaluationRow>& rows) {
       "   K  vertices  triangles   share    radius       DE all   MPE all      DE in L  MPE in L  "
       "regions s"
       "  transfer s       leak    crease        by\n";
-  // A space at least stands between two.
+  // Separates cells by at least one space.
   const auto cell = [](const std::string& content, int width) {
     return std::string(std::max<std::size_t>(width, content.size() + 1) - content.size(), ' ') +
            content;
@@ -111,7 +111,7 @@ int most_components(const EvaluationOptions& options) {
                        : *std::ranges::max_element(options.counts);
 }
 
-/// Of the largest decomposition; nothing where there is none.
+/// Plan of the largest decomposition; empty if there is none.
 DecompositionPlan plan_of_evaluation(const Invocation& invocation,
                                      const EvaluationOptions& options) {
   if (options.regions.select == Selector::transfer ||
@@ -123,7 +123,7 @@ DecompositionPlan plan_of_evaluation(const Invocation& invocation,
   return analysis_plan(invocation, *invocation.get<FieldSequence>("source").frames, analysis);
 }
 
-/// One decomposition after the other, each followed by a transfer.
+/// Peak of one decomposition after the other, each followed by a transfer.
 double memory_of_evaluate(const Invocation& invocation) {
   const FrameSource& sequence = *invocation.get<FieldSequence>("source").frames;
   const EvaluationOptions options = evaluation_parameters().read(invocation.parameters);

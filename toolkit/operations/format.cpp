@@ -79,7 +79,7 @@ std::vector<std::string> notes_on_losses(const Format& format, const Data& data,
 }
 
 Paths write_with_extra(const WriteRequest& request, const std::function<Paths()>& write) {
-  // The parents that the request's target needs are made first and go last where it fails.
+  // Makes parent folders of the target first; they are removed again if writing fails.
   PendingOutputs extra(request.overwrite, request.inputs, request.together);
   Paths beside;
   for (const auto& [name, content] : request.extra) {

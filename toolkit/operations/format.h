@@ -17,22 +17,23 @@ class PendingOutputs;
 
 /// How a value is read.
 struct ReadRequest {
-  /// With those of the format.
+  /// Includes the format's parameters.
   const Parameters& parameters;
-  /// A sequence with its fields; a model that keeps its identities, otherwise it is one person.
+  /// `fields`: read a sequence with its fields. `identities`: keep a model's identities, instead of
+  /// reading one person.
   bool fields = false;
   bool identities = false;
   /// A sequence may read its frames later.
   bool may_stream = false;
-  /// The mesh that a region set is for.
+  /// Mesh of a region set.
   int vertices = 0;
   const Triangles* triangles = nullptr;
 };
 
-/// A value, and what was noticed while reading it.
+/// A value and the reader's notes.
 struct ReadValue {
   NamedData value;
-  /// All that was read, for the manifest.
+  /// All files that were read, for the manifest.
   std::vector<std::filesystem::path> files = {};
   std::vector<std::string> notes = {};
 };
@@ -42,65 +43,67 @@ struct WriteRequest {
   std::filesystem::path target;
   const Parameters& parameters;
   bool overwrite = false;
-  /// Files and folders that were read for it, which must stay.
+  /// Input files and folders, which must not be overwritten.
   std::vector<std::filesystem::path> inputs = {};
-  /// Outputs that it appears together with; alone without.
+  /// Outputs that appear at the same time; null if the output appears alone.
   PendingOutputs* together = nullptr;
   /// Further files (name, content) that appear together with the output.
   std::vector<std::pair<std::string, std::string>> extra = {};
 };
 
-/// A way to read and to write one kind of value, declared once: what is read and written, and every
-/// list of formats, comes from it.
+/// A way to read and write one kind of value, declared once. Readers, writers and every list of
+/// formats use this declaration.
 struct Format {
-  /// What is not a file has no extension: a folder, a pattern, MODEL@identity=1.5.
+  /// Texts other than files have no extension: a folder, a pattern, MODEL@identity=1.5.
   static constexpr auto kFolder = "";
   static constexpr auto kAnyFile = "*";
 
   std::string name;  ///< "PC2 point cache"
   DataKind kind;
-  /// In lower case, such as ".pc2"; or kFolder alone; or kAnyFile alone.
+  /// Extensions in lower case, such as ".pc2"; or only kFolder, or only kAnyFile.
   std::vector<std::string> extensions;
-  /// Options of reading.
+  /// Parameters for reading.
   std::vector<Parameter> reading = {};
-  /// Throws IoError, MismatchError, Cancelled; not set where it is not read.
+  /// Reads a value; empty for formats that are only written. Throws IoError, MismatchError,
+  /// Cancelled.
   std::function<ReadValue(const std::string& text, const ReadRequest&, const Context&)> read = {};
-  /// Options of writing.
+  /// Parameters for writing.
   std::vector<Parameter> writing = {};
-  /// Writes atomically; returns the files. Throws OutputError, MismatchError, Cancelled; not set
-  /// where it is not written.
+  /// Writes a value atomically and returns the files; empty for formats that are only read. Throws
+  /// OutputError, MismatchError, Cancelled.
   std::function<std::vector<std::filesystem::path>(const Data&, const WriteRequest&,
                                                    const Context&)>
       write = {};
   /// A sequence keeps its fields.
   bool fields = false;
-  /// Displacements from a rest pose take the place of fields of their names: show_displacement().
+  /// Displacements from a rest pose replace fields of the same name: show_displacement().
   bool displacements = false;
-  /// What else of a sequence its files have a place for, with these options; where it is not set
-  /// nothing is said.
+  /// Other parts of a sequence that the files can store, with these options. If empty, losses are
+  /// not reported.
   std::function<HeldParts(const Parameters&)> holds = {};
-  /// It holds blendshape weights, a table's or those that drive a sequence: for outputs that say
-  /// so.
+  /// The format stores blendshape weights, from a table or from a sequence that they drive. Only
+  /// outputs with Output::weights use it.
   bool weights = false;
-  /// What a value loses in it, as notes; where it is not set nothing is said.
+  /// Notes on what a value loses in this format. If empty, losses are not reported.
   std::function<std::vector<std::string>(const Data&, const std::filesystem::path&)> losses = {};
 
   bool has(const std::string& extension) const;
-  /// Those of reading and of writing, each once.
+  /// Parameters for reading and writing, each once.
   std::vector<Parameter> options() const;
 };
 
-/// ".json, .csv or a folder": what formats are called in messages and help.
+/// List of extensions for messages and help: ".json, .csv or a folder".
 std::string listed_extensions(std::vector<std::string> extensions);
 
-/// What is to be said of all that a format leaves out of a sequence, such as "out.stl: this format
-/// holds no texture coordinates or order of vertices; written without". None where it holds all.
+/// Notes on everything that a format drops from a sequence. An example is "out.stl: this format
+/// holds no texture coordinates or order of vertices; written without". Empty if the format stores
+/// all.
 std::vector<std::string> notes_on_losses(const Format& format, const Data& data,
                                          const WriteRequest& request);
 
-/// Calls `write`, which makes the request's target and returns its files, and lets the request's
-/// further files appear beside it right after; where either fails, nothing appears. Returns all
-/// files. Throws OutputError.
+/// Calls `write`, which makes the request's target and returns its files. The request's further
+/// files appear beside the target immediately afterwards. If either fails, no file appears. Returns
+/// all files. Throws OutputError.
 std::vector<std::filesystem::path> write_with_extra(
     const WriteRequest& request, const std::function<std::vector<std::filesystem::path>()>& write);
 
@@ -108,7 +111,7 @@ std::vector<std::filesystem::path> write_with_extra(
 /// Throws OutputError.
 std::vector<std::filesystem::path> write_text(const WriteRequest& request, const std::string& text);
 
-/// The same with the text of a document.
+/// As write_text(), with the text of a document.
 std::vector<std::filesystem::path> write_document(const Data& document, const WriteRequest& request,
                                                   const Context& context = {});
 

@@ -55,7 +55,7 @@ ReadValue read_sequence_data(const std::string& text, const ReadRequest& request
   return value_of(FieldSequence(std::move(read.sequence)), read);
 }
 
-/// `options` with the files of a request.
+/// Adds the files of a request to `options`.
 SequenceWriteOptions asked_for(const WriteRequest& request, SequenceWriteOptions options) {
   options.overwrite = request.overwrite;
   options.inputs = request.inputs;
@@ -71,7 +71,7 @@ Paths write_sequence_data(const Data& data, const WriteRequest& request,
                         request.extra, context);
 }
 
-/// The rest pose with the fields, as one mesh.
+/// Writes the rest pose with the fields, as one mesh.
 Paths write_om_regions(const Data& data, const WriteRequest& request, const Context& context) {
   const FieldSequence& shown = std::get<RegionData>(data).fields;
   check_shown(shown, request.target);
@@ -113,7 +113,7 @@ Paths write_components_data(const Data& data, const WriteRequest& request, const
   });
 }
 
-/// One mesh as a model without expressions.
+/// Reads one mesh as a model without expressions.
 MorphableModel model_of_mesh(const std::filesystem::path& path, const Context& context) {
   TriMesh mesh = read_mesh(path, context);
   return {std::make_shared<Connectivity>(std::move(mesh.connectivity)),
@@ -165,7 +165,7 @@ ReadValue read_model_data(const std::string& text, const ReadRequest& request,
   return read;
 }
 
-/// As `fit` reads it.
+/// Mapping of landmarks in the format that `fit` reads.
 std::string mapping_text(const std::vector<std::pair<int, VertexIndex>>& landmarks) {
   std::string text = "# landmark of iBUG = vertex, 0-based\n[landmark_mappings]\n";
   for (const auto& [landmark, vertex] : landmarks) {
@@ -202,7 +202,7 @@ ReadValue read_document(const std::string& text, const ReadRequest&, const Conte
   return {{text, Document{read_file(text)}}, {text}};
 }
 
-/// A format of text, which `text_of` makes of a value.
+/// Writer of a text format; `text_of` converts a value to text.
 template <typename Value>
 std::function<Paths(const Data&, const WriteRequest&, const Context&)> writer_of(
     std::string (*text_of)(const Value&)) {
@@ -288,7 +288,7 @@ void add_model_formats(OperationTable& table) {
                    .read = read_model_data});
 }
 
-/// What a list of vertices leaves out of regions with a soft border.
+/// Notes that a list of vertices loses the weights of regions with a soft border.
 std::vector<std::string> lost_weights(const Data& data, const std::filesystem::path& target) {
   if (std::get<RegionData>(data).regions.weights.size() == 0) return {};
   return {target.string() +

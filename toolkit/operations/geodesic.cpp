@@ -19,9 +19,9 @@ namespace mimetra {
 namespace {
 
 struct GeodesicCall {
-  /// Vertices to measure from.
+  /// Vertices from which distances are measured.
   std::vector<int> sources = {0};
-  /// Between which the support map rises.
+  /// Distances between which the support map rises.
   Length d_min = AnalysisOptions{}.d_min;
   Length d_max = AnalysisOptions{}.d_max;
   DistanceOptions distances = {};
@@ -39,7 +39,7 @@ BoundParameters<GeodesicCall> geodesic_parameters() {
       .add(&GeodesicCall::distances, distance_parameters());
 }
 
-/// Distance to the nearest of the sources.
+/// Distance to the nearest of the sources. Throws MismatchError for a source without a triangle.
 Eigen::VectorXd nearest(const SurfaceDistances& distances, const std::vector<int>& sources,
                         int vertices) {
   Eigen::VectorXd result =
@@ -70,7 +70,7 @@ double memory_of_geodesic(const Invocation& invocation) {
              : kHeatBytesPerVertex * vertices;
 }
 
-/// Throws where there is nothing to measure, or not the memory for it.
+/// Throws if the mesh has no size, or if exact distances need more memory than is left.
 void check_mesh(const Invocation& invocation, const MeshSequence& mesh) {
   const std::string& name = invocation.input("mesh").name;
   if (mesh.diameter() == 0) {

@@ -18,14 +18,14 @@ struct Color {
   bool operator==(const Color&) const = default;
 };
 
-/// A picture: its pixels row after row, from the top left.
+/// A picture, with pixels row by row from the top left.
 struct Image {
   int width = 0;
   int height = 0;
   std::vector<Color> pixels;
 
   Image() = default;
-  /// Of one colour. \pre columns >= 0, rows >= 0
+  /// Makes an image of one colour. \pre columns >= 0, rows >= 0
   Image(int columns, int rows, const Color& color = {})
       : width(columns),
         height(rows),
@@ -41,22 +41,22 @@ struct Image {
   const Color& at(int x, int y) const { return pixels[index(x, y)]; }
 };
 
-/// What the frames of a clip show, each image read when it is asked for.
+/// Images of the frames of a clip, each read on demand.
 class ImageSequence {
  public:
   virtual ~ImageSequence() = default;
 
   virtual int frames() const = 0;
-  /// Quickest frame after frame. May be called from several threads. Throws IoError;
-  /// std::out_of_range for a frame that is not there.
+  /// Reads a frame; consecutive frames are fastest. Safe to call from several threads. Throws
+  /// IoError, and std::out_of_range for a frame that does not exist.
   virtual Image image(int frame) const = 0;
-  /// What messages call a frame: "a/1.png", "clip.mp4, frame 12".
+  /// Name of a frame in messages: "a/1.png", "clip.mp4, frame 12".
   virtual std::string name(int frame) const = 0;
-  /// True for frames of one recording: what one shows is near where the last one showed it.
+  /// True for frames of one recording: things are near their place in the previous frame.
   virtual bool is_recording() const { return false; }
-  /// The file whose sound belongs to the frames, or none.
+  /// File with the sound of the frames, or empty.
   virtual std::filesystem::path sound() const { return {}; }
-  /// Throws IoError for what image() would refuse, as far as that shows without decoding.
+  /// Throws IoError for images that image() would refuse, as far as this shows without decoding.
   virtual void check() const = 0;
 
  protected:
@@ -65,15 +65,14 @@ class ImageSequence {
   ImageSequence& operator=(const ImageSequence&) = default;
 };
 
-/// The frames `chosen` of a sequence, in this order. Throws std::out_of_range for frames that are
-/// not there.
+/// Returns the frames `chosen` of a sequence, in this order. Throws std::out_of_range for frames
+/// that do not exist.
 std::shared_ptr<const ImageSequence> selected(std::shared_ptr<const ImageSequence> images,
                                               std::vector<int> chosen);
 
-/// The axis that points up; faces look along +z, or -y where z is up.
+/// The axis that points up. Faces look along +z, or along -y if z points up.
 enum class UpAxis { y, z };
 
-/// As people choose it.
 constexpr std::string_view choice_name(UpAxis value) {
   switch (value) {
     case UpAxis::y:

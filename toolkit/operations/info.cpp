@@ -13,7 +13,7 @@ namespace mimetra {
 
 namespace {
 
-/// The connected parts by the numbers that --only and --without take.
+/// Reports the connected parts, in the order of the numbers for --only and --without.
 Json json_of(const SurfaceParts& parts) {
   std::vector<int> vertices(parts.count(), 0);
   for (const int part : parts.of_vertex) ++vertices[part];
@@ -24,7 +24,7 @@ Json json_of(const SurfaceParts& parts) {
   return list;
 }
 
-/// "97.1 %, 1.2 %, ..." of the surface, the first of many.
+/// Lists the first parts' shares of the surface: "97.1 %, 1.2 %, ...".
 std::string shares_of(const SurfaceParts& parts) {
   std::vector<std::string> shares;
   shares.reserve(static_cast<std::size_t>(parts.count()));
@@ -45,7 +45,7 @@ Json json_of(const std::vector<Field>& fields) {
   return list;
 }
 
-/// "region, roi on vertices; in_L on faces", the first of many.
+/// Lists the first names: "region, roi on vertices; in_L on faces".
 std::string names_of(const std::vector<Field>& fields) {
   std::vector<std::string> places;
   for (const auto location : {Field::Location::vertices, Field::Location::triangles}) {

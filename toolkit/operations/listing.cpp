@@ -23,7 +23,7 @@ std::string listing(const OperationTable& table) {
   return text;
 }
 
-/// Formats in the order of their kinds.
+/// Returns the formats sorted by kind.
 std::vector<Format> by_kind(const OperationTable& table) {
   std::vector<Format> formats = table.formats();
   std::ranges::stable_sort(formats, {}, &Format::kind);
@@ -37,7 +37,7 @@ std::vector<std::string> option_words(const std::vector<Parameter>& parameters) 
   return words;
 }
 
-/// What files have a place for where no option says otherwise; "" where nobody knows.
+/// Describes what the files of a format store by default; "" if that is unknown.
 std::string held_by(const Format& format) {
   if (!format.write) return "";
   std::string words = format.holds ? description(format.holds(Parameters(format.writing))) : "";
@@ -71,7 +71,7 @@ std::string formats_as_markdown(const OperationTable& table) {
   return text;
 }
 
-/// A line each: what names end in, in a column of its own, and what it is.
+/// Lists the formats, one per line, with a column of extensions and a column of names.
 std::string formats_as_text(const OperationTable& table) {
   std::string text;
   const DataKind* kind = nullptr;

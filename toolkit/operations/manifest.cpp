@@ -15,7 +15,7 @@
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 
-// Of its header alone: who links this library need not find another.
+// Inlines xxHash from its header, so users of this library need not link xxHash.
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
@@ -25,8 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// XXH3 (64 bits) of a file's bytes, as hexadecimal digits; empty where it cannot be read,
-/// as what is no regular file.
+/// XXH3 (64 bits) of a file's bytes, as hexadecimal digits. Empty if the file cannot be read or is
+/// not a regular file.
 std::string file_hash(const fs::path& path) {
   std::error_code unreadable;
   if (!std::filesystem::is_regular_file(path, unreadable)) return "";
@@ -128,7 +128,8 @@ std::string manifest_name(const std::filesystem::path& output, bool is_folder) {
 namespace {
 
 constexpr const char* kFileManifest = ".run.json";
-/// What looks for regions; of several runs in a folder the first kind counts.
+/// Operations that look for regions. In a folder with several runs, the first of these operations
+/// wins.
 constexpr std::array<std::string_view, 3> kOperations = {"transfer", "evaluate", "regions"};
 
 RunRecord parse(const fs::path& manifest) {
@@ -155,7 +156,7 @@ RunRecord parse(const fs::path& manifest) {
   return run;
 }
 
-/// The manifest of a file; empty where there is none.
+/// Manifest of a file; empty if there is none.
 fs::path manifest_beside(const fs::path& file) {
   fs::path stem = file;
   for (const fs::path& name :
@@ -191,7 +192,7 @@ void check_looked_for_regions(const RunRecord& run) {
   }
 }
 
-/// None for what is not a manifest of a run that looked for regions.
+/// Parses a manifest; empty unless it is a manifest of a run that looked for regions.
 std::optional<RunRecord> parse_if_suitable(const fs::path& manifest) {
   try {
     RunRecord run = parse(manifest);
@@ -204,13 +205,13 @@ std::optional<RunRecord> parse_if_suitable(const fs::path& manifest) {
   }
 }
 
-/// The run in a folder of several outputs that stands for all of it.
+/// Finds the main run in a folder of several outputs.
 RunRecord main_run(const fs::path& folder) {
   std::vector<RunRecord> runs;
   for (const fs::path& manifest : manifests_in(folder)) {
     std::optional<RunRecord> run = parse_if_suitable(manifest);
     if (!run) continue;
-    // Every output of a run has the same manifest.
+    // All outputs of a run have the same manifest.
     const auto same = std::ranges::find(runs, run->arguments, &RunRecord::arguments);
     if (same == runs.end()) runs.push_back(std::move(*run));
   }
@@ -231,7 +232,7 @@ RunRecord main_run(const fs::path& folder) {
       "no run that looked for regions; expected what transfer, regions or evaluate wrote");
 }
 
-/// False for one that only lists files: those of a library's, not of a run.
+/// False for a manifest that only lists files. The library writes such manifests without a run.
 bool is_of_a_run(const fs::path& manifest) {
   const std::optional<Json> json = read_json_if_any(manifest);
   return !json || !json->is_object() || json->contains("command") || !json->contains("files");

@@ -16,7 +16,7 @@ namespace {
 
 struct MarkersCall {
   FaceSearchOptions search = {};
-  /// Landmarks are looked for although files beside both meshes name their vertices.
+  /// Search for landmarks even if files beside both meshes name their vertices.
   bool ignore_files = false;
 
   static constexpr Option kIgnoreFiles{"ignore_files", &MarkersCall::ignore_files};

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where a value was read; empty for one that was made.
+/// Path from which a value was read; empty for a value that was made.
 fs::path place_of(const NamedData& value) {
   if (!value.origin.path.empty()) return value.origin.path;
   std::error_code unreadable;
@@ -30,7 +30,7 @@ fs::path place_of(const NamedData& value) {
 
 LandmarkVertices landmarks_beside(const fs::path& place, int vertices, const Log& log) {
   std::vector<fs::path> files = landmark_mappings(place);
-  // Of several, that of the 68 counts.
+  // landmarks68.txt has priority over other files.
   std::stable_partition(files.begin(), files.end(),
                         [](const fs::path& file) { return file.filename() == "landmarks68.txt"; });
   if (files.empty()) return {};
@@ -46,7 +46,7 @@ LandmarkVertices landmarks_beside(const fs::path& place, int vertices, const Log
   return {};
 }
 
-/// Of a sequence or a model.
+/// Rest pose of a sequence, or neutral of a model.
 TriMesh rest_mesh(const NamedData& value) {
   if (const auto* sequence = std::get_if<FieldSequence>(&value.data)) {
     return {sequence->frames->rest(), sequence->frames->connectivity()};
@@ -69,9 +69,9 @@ Head head_of(const NamedData& value, const Log& log, bool ignore_files) {
 namespace {
 
 struct MatchCall {
-  /// Of the vertices in marker files.
+  /// Number of the first vertex in marker files.
   int index_base = 0;
-  /// Landmarks are looked for although files beside both meshes name their vertices.
+  /// Search for landmarks even if files beside both meshes name their vertices.
   bool ignore_files = false;
 
   static constexpr Option kIndexBase{
@@ -79,7 +79,7 @@ struct MatchCall {
   static constexpr Option kIgnoreFiles{"ignore_files", &MatchCall::ignore_files};
 };
 
-/// `words` stand for no file, the first as a default.
+/// Declares a parameter of several files. `words` may replace a file; the first is the default.
 Parameter several(std::string name, std::string help, std::vector<std::string> words = {}) {
   Parameter parameter{std::move(name), ParameterKind::file, {}, std::move(help)};
   parameter.several = true;
@@ -88,12 +88,12 @@ Parameter several(std::string name, std::string help, std::vector<std::string> w
   return parameter;
 }
 
-/// What stands for files of --markers and --rules.
+/// Words that replace files of --markers and --rules.
 constexpr std::string_view kAuto = "auto";
 constexpr std::string_view kNone = "none";
 
-/// What is named for each target: a file, or a word that stands for one, the first where nothing
-/// is; none where there are no words.
+/// Returns a file or a word for each target. The first word is the default; the list is empty if
+/// there are neither files nor words.
 std::vector<std::string> named_for_each(const Parameters& parameters, const std::string& name,
                                         std::size_t targets) {
   const std::vector<std::string>& words = parameters.find(name)->choices;
@@ -107,7 +107,7 @@ std::vector<std::string> named_for_each(const Parameters& parameters, const std:
                    ", between commas");
 }
 
-/// Looks for markers from a call's source to its targets; the source's face is looked for once.
+/// Searches for markers from a call's source to its targets; searches the source's face only once.
 class MarkersTo {
  public:
   MarkersTo(const Invocation& invocation, std::string source)
@@ -133,20 +133,21 @@ class MarkersTo {
       std::make_shared<std::optional<MarkerSearch>>();
 };
 
-/// "12 expressions, 3 groups of some that exclude each other and 1 pair".
+/// Describes rules: "12 expressions, 3 groups of some that exclude each other and 1 pair".
 std::string summary_of(const WeightRules& rules) {
   return counted(std::ssize(rules.expressions), "expression") + ", " +
          counted(std::ssize(rules.exclusive), "group") + " of some that exclude each other and " +
          counted(std::ssize(rules.pairs), "pair");
 }
 
-/// Operations without a choice of spaces solve for weights, where there are expressions.
+/// Whether a target is solved without weights. Operations without the option --space solve for
+/// weights if there are expressions.
 bool has_no_weights(const Parameters& parameters, const BlendshapeModel& model) {
   if (parameters.find("space")) return solves_for_vertices(parameters, model);
   return model.expressions().size() == 0;
 }
 
-/// The rules that are found beside a target; none where they cannot act.
+/// Reads the rules beside a target; empty if they would have no effect.
 WeightRules found_rules(const Invocation& invocation, const NamedData& target) {
   const Parameters& parameters = invocation.parameters;
   if (has_no_weights(parameters, person_of(target))) return {};
@@ -162,7 +163,7 @@ WeightRules found_rules(const Invocation& invocation, const NamedData& target) {
   return rules;
 }
 
-/// The rules of each target, read even where they do not act.
+/// Reads the rules of each target, even if they have no effect.
 std::vector<WeightRules> rules_of(const Invocation& invocation) {
   const std::vector<NamedData>& targets = invocation.inputs.at("target");
   const auto named = named_for_each(invocation.parameters, "rules", targets.size());
@@ -178,7 +179,8 @@ std::vector<WeightRules> rules_of(const Invocation& invocation) {
   return rules;
 }
 
-/// The targets for which an option of weights is asked for, and where it does not act.
+/// Number of targets for which an option of weights is set, and the targets on which it has no
+/// effect.
 struct WeightOptionTargets {
   std::size_t asked = 0;
   std::vector<std::string> without = {};
@@ -199,8 +201,8 @@ WeightOptionTargets targets_with(const Invocation& invocation, const std::string
   return found;
 }
 
-/// Options of weights are refused where no target that they are for has any, and said to leave out
-/// those that have none.
+/// Refuses an option of weights if none of its targets has weights. Warns if some targets have
+/// none.
 void check_weight_options(const Invocation& invocation) {
   for (const std::string name : {"ridge", "l1", "symmetry", "exclusive", "rules"}) {
     const auto [asked, without] = targets_with(invocation, name);
@@ -213,7 +215,7 @@ void check_weight_options(const Invocation& invocation) {
   }
 }
 
-/// What pairs one target with the source by markers that were named.
+/// Pairs one target with the source by the markers of a file.
 void take_markers(const Invocation& invocation, const TriMesh& source, const std::string& file,
                   Target& target) {
   MarkerFile read = read_marker_file(file, invocation.parameters.integer("index-base"));

@@ -15,7 +15,7 @@ namespace mimetra {
 
 namespace {
 
-/// Those that the format can write an output with.
+/// Extensions of the format if it can write the output, otherwise none.
 std::vector<std::string> extensions_of(const Output& output, const Format& format) {
   const bool fits = format.write && format.kind == output.kind &&
                     (format.fields || !output.fields) && (output.weights || !format.weights);
@@ -34,8 +34,8 @@ bool ends_in(const std::filesystem::path& target, const std::string& extension) 
   return lower_case(target.filename().string()).ends_with(extension);
 }
 
-/// The double extension of some format that a name ends in, or "": ".livelink.csv" is no ".csv",
-/// also where it cannot be written.
+/// Double extension of some format at the end of a name, or "". A name in ".livelink.csv" is not a
+/// ".csv" file, even if Live Link cannot be written.
 std::string written_extension(const std::vector<Format>& formats,
                               const std::filesystem::path& target) {
   for (const Format& format : formats) {
@@ -47,7 +47,7 @@ std::string written_extension(const std::vector<Format>& formats,
   return "";
 }
 
-/// "what it is: .json or .csv".
+/// Appends the formats to a help text: "what it is: .json or .csv".
 std::string with_formats(const std::string& help, const std::vector<std::string>& extensions) {
   if (extensions.empty()) return help;
   return (help.empty() ? help : help + ": ") + listed_extensions(extensions);
@@ -225,7 +225,7 @@ const Format& OperationTable::reader(DataKind kind, const std::string& text) con
 
 namespace {
 
-/// A folder's name may have a dot.
+/// Hints that a folder's name with a dot needs a slash.
 std::string hint_of_folder(const std::vector<std::string>& known,
                            const std::filesystem::path& target) {
   const bool folder = std::ranges::find(known, Format::kFolder) != known.end();

@@ -17,43 +17,41 @@
 
 namespace mimetra {
 
-/// Something an operation works on.
 struct Input {
   std::string name;  ///< "source"; an optional or named one is the option --NAME
   DataKind kind;
   std::string help;
   bool optional = false;
-  bool repeated = false;    ///< one or more; only the last positional input
-  bool named = false;       ///< an option although it is needed
-  bool fields = false;      ///< a sequence whose fields are looked at
+  bool repeated = false;    ///< one value or more; only for the last positional input
+  bool named = false;       ///< an option although it is required
+  bool fields = false;      ///< a sequence that is read with its fields
   bool identities = false;  ///< a model that keeps its identities; otherwise it is one person
-  bool run = false;         ///< the manifest of a run, whose inputs are read too
-  bool streamed = false;    ///< frames are read when they are needed, not all at once
-  /// A sequence of which only the faces and the rest pose count: what says how sequences are read
-  /// (--frames, --weights) is about the others.
+  bool run = false;         ///< the manifest of a run, whose inputs are also read
+  bool streamed = false;    ///< frames are read on demand, not all at once
+  /// Only the faces and the rest pose of the sequence count. Parameters for reading sequences
+  /// (--frames, --weights) do not apply to it.
   bool shape = false;
-  /// An optional one that a command line has in its place among the needed ones.
+  /// An optional input that is positional on a command line.
   bool positional = false;
 
-  /// True where a command line names it by an option.
+  /// True if a command line gives it by an option.
   bool is_option() const { return (optional && !positional) || named; }
 };
 
-/// Something an operation makes.
 struct Output {
-  std::string name;  ///< "out" is -o, another is --NAME
+  std::string name;  ///< "out" is -o, others are --NAME
   DataKind kind;
   std::string help;
   bool optional = false;
-  bool repeated = false;  ///< one value for each of the repeated input
-  /// ".fit.json": it is written to NAME.fit.json beside the output `out` where no other path is
-  /// asked for.
+  bool repeated = false;  ///< one value for each value of the repeated input
+  /// Ending such as ".fit.json": by default the output is written to NAME.fit.json beside the
+  /// output `out`.
   std::string companion = {};
-  /// Its fields matter: a sequence that only formats with fields take.
+  /// A sequence that only formats with fields can write.
   bool fields = false;
-  /// The formats that it is written in, where its kind has others too; "" is a folder.
+  /// Formats to which the output is restricted; "" is a folder. Empty for all formats of its kind.
   std::vector<std::string> extensions = {};
-  /// A correspondence is written beside it where source and target are paired.
+  /// If source and target are paired, a correspondence is written beside the output.
   bool paired = false;
   /// A table of blendshape weights, or a sequence that may be written as the weights that drive it.
   bool weights = false;
@@ -62,21 +60,21 @@ struct Output {
 enum class LogLevel { info, warning };
 using Log = std::function<void(LogLevel, const std::string&)>;
 
-/// More threads than that are a slip of the one who asks for them.
+/// Larger numbers of threads are refused as typing errors.
 constexpr int kMostThreads = 1024;
 
-/// One call of an operation: values, not files.
+/// One call of an operation, with values instead of files.
 struct Invocation {
   std::map<std::string, std::vector<NamedData>> inputs;
   Parameters parameters;
-  /// Outputs asked for and where their values go, in order (no paths for a host that takes values);
-  /// others need not be computed.
+  /// Outputs to compute, and the paths of their values in order. Paths are empty for a host that
+  /// takes values. Other outputs need not be computed.
   std::map<std::string, std::vector<std::filesystem::path>> wanted;
-  /// How the call runs: with the ranks of other processes only if the operation is shared. Its
-  /// notes become warnings of the log once with_notes_as_warnings() made it.
+  /// Ranks are available only if the operation is shared. Notes become warnings of the log after
+  /// with_notes_as_warnings().
   Context context;
   Log log;
-  /// The program's; empty where it cannot find faces.
+  /// The program's finder; empty if the program cannot find faces.
   LandmarkFinder landmark_finder = {};
 
   template <typename T>
@@ -87,9 +85,9 @@ struct Invocation {
   const T* find(const std::string& name) const {
     return has_input(name) ? &get<T>(name) : nullptr;
   }
-  /// The first value of an input. Throws std::out_of_range where it has none.
+  /// First value of an input. Throws std::out_of_range if there is none.
   const NamedData& input(const std::string& name) const { return inputs.at(name).front(); }
-  /// Its frames, all in memory.
+  /// The input's frames, all in memory.
   const MeshSequence& sequence(const std::string& name) const {
     return get<FieldSequence>(name).sequence();
   }
@@ -102,28 +100,28 @@ struct Invocation {
   void info(const std::string& message) const;
 };
 
-/// A run that wrote something, ready to be made again.
+/// A run that wrote outputs, ready to be repeated.
 struct RunRead {
   RunRecord record;
-  Invocation invocation;  ///< its inputs, read, and its parameters
+  Invocation invocation;  ///< inputs, read again, and parameters
 };
 
-/// What came of it.
+/// Result of a call.
 struct Outcome {
-  /// By name of the output; several values where an input was repeated.
+  /// Values by name of the output; several if an input was repeated.
   std::map<std::string, std::vector<NamedData>> outputs;
   std::string report;   ///< a JSON object, the result for programs
-  std::string summary;  ///< the same for people, lines of text
+  std::string summary;  ///< the result for people, lines of text
 };
 
-/// What an operation prints of its result, as it is called there, and what that means.
+/// A quantity in the printed result, with its name there and its meaning.
 struct Measure {
   std::string name;
   std::string meaning;
 };
 
-/// An operation, declared once: the command, its help, the reference page and every host's dialog
-/// are made of this.
+/// An operation, declared once. The command, its help, the reference page and every host's dialog
+/// use this declaration.
 struct Operation {
   std::string name;
   std::string summary;  ///< one line
@@ -133,31 +131,32 @@ struct Operation {
   std::vector<std::string> examples;  ///< two command lines without the program's name
   std::function<Outcome(const Invocation&)> run;
   std::vector<Measure> measures = {};
-  /// Options, inputs and outputs that do not go together: a Call refuses them before it reads
+  /// Options, inputs and outputs that exclude each other. A Call refuses them before it reads
   /// anything.
   std::vector<Exclusion> exclusions = {};
-  /// Several processes compute it together: frames are dealt out to them, and vertices of the
-  /// decomposition. The first one writes.
+  /// Several processes compute the operation together: they share out frames, and vertices of the
+  /// decomposition. Rank 0 writes.
   bool shared = false;
-  /// Bytes that it takes at its peak besides what it is given; none where that is little.
+  /// Peak memory in bytes besides the inputs; empty if it is small.
   std::function<double(const Invocation&)> memory = {};
-  /// Bytes that it keeps in a file without a name meanwhile, in the folder for temporary files.
+  /// Bytes of an unnamed temporary file, in the folder for temporary files.
   std::function<double(const Invocation&)> scratch = {};
-  /// For who asks what a run would do: throws and warns as it would of its inputs, without
-  /// computing.
+  /// Checks the inputs and reports what a run would do, without computing. Throws and warns as
+  /// run() would.
   std::function<void(const Invocation&)> foresee = {};
 };
 
-/// All operations and formats of a program; built by its main function and passed down.
+/// All operations and formats of a program, built by its main function and passed down.
 class OperationTable {
  public:
-  /// Throws std::invalid_argument for a name that is taken, or that two of the operation's inputs,
-  /// outputs and parameters (with those of its files) have.
+  /// Throws std::invalid_argument if the name is in use. Also throws if two inputs, outputs or
+  /// parameters of the operation, including the parameters of its files, share a name.
   void add(Operation operation);
-  /// Throws std::invalid_argument for an extension that its kind is read or written by already, and
-  /// for an option that means something else in an operation.
+  /// Throws std::invalid_argument for an extension that the kind already reads or writes, and for a
+  /// parameter that means something else in an operation.
   void add(Format format);
-  /// What finds faces in drawings of meshes. Throws std::invalid_argument where there is one.
+  /// Sets the function that finds faces in drawings of meshes. Throws std::invalid_argument if
+  /// there is one already.
   void add(LandmarkFinder finder);
 
   const std::vector<Operation>& operations() const { return operations_; }
@@ -165,37 +164,37 @@ class OperationTable {
   const LandmarkFinder& landmark_finder() const { return landmark_finder_; }  ///< may be empty
   const Operation* find(const std::string& name) const;
 
-  /// The operation's own parameters, those of reading its inputs and of writing its outputs. Throws
-  /// std::invalid_argument where an own one has a name of those, or two of those share a name but
-  /// not a kind.
+  /// Returns the operation's own parameters, then the parameters for reading its inputs and writing
+  /// its outputs. Throws std::invalid_argument if an operation's own parameter shares a name with
+  /// one of files. Also throws if parameters of files share a name but not a kind.
   std::vector<Parameter> parameters_of(const Operation& operation) const;
-  /// The format that a value of a kind is read from. Throws UsageError, and IoError for a file
-  /// whose extension no format of the kind has; both list those that are known.
+  /// Returns the format that reads a value of a kind. Throws UsageError if there is none. Throws
+  /// IoError for a file with an unknown extension, and lists the known ones.
   const Format& reader(DataKind kind, const std::string& text) const;
-  /// The format that an output is written in. Throws UsageError that lists the known extensions.
+  /// Returns the format that writes an output. Throws UsageError that lists the known extensions.
   const Format& writer(const Output& output, const std::filesystem::path& target) const;
-  /// Those of the formats that an input is read from or an output written in, as in Format.
+  /// Extensions of the formats that read an input or write an output, as in Format.
   std::vector<std::string> extensions(const Input& input) const;
   std::vector<std::string> extensions(const Output& output) const;
-  /// What an input or output is, for people: its help, and these extensions.
+  /// Describes an input or output for people: its help, and these extensions.
   std::string help(const Input& input) const;
   std::string help(const Output& output) const;
-  /// True where that format is a folder.
+  /// True if that format is a folder.
   bool writes_folder(const Output& output, const std::filesystem::path& target) const;
-  /// Makes and removes what that writer would begin with, so that nobody computes for nothing.
-  /// Throws OutputError where it cannot be written, exists and not `overwrite`, or would replace
-  /// one of `inputs`.
+  /// Tests whether the writer could start, before any computation, and removes the test's files.
+  /// Throws OutputError if the target cannot be written, if it exists without `overwrite`, or if it
+  /// would replace one of `inputs`.
   void check_writable(const Output& output, const std::filesystem::path& target, bool overwrite,
                       const std::vector<std::filesystem::path>& inputs = {}) const;
-  /// Where an output's values go, one for each of `names`: the path asked for where there is one
-  /// name; otherwise a folder OUT/NAME each, or OUT-NAME.EXT for files.
+  /// Paths of an output's values, one for each of `names`. For one name this is `asked`; otherwise
+  /// a folder OUT/NAME, or a file OUT-NAME.EXT.
   std::vector<std::filesystem::path> output_paths(const Output& output,
                                                   const std::filesystem::path& asked,
                                                   const std::vector<std::string>& names) const;
-  /// Where a companion goes, given the path of the output `out`.
+  /// Path of a companion, given the path of the output `out`.
   std::filesystem::path companion_path(const Operation& operation, const Output& companion,
                                        const std::filesystem::path& out) const;
-  /// The table as a JSON array: name, summary, inputs, outputs, parameters, examples.
+  /// Returns the operations as a JSON array: name, summary, inputs, outputs, parameters, examples.
   std::string json() const;
 
  private:
@@ -206,14 +205,13 @@ class OperationTable {
   LandmarkFinder landmark_finder_;
 };
 
-/// The operations of the toolkit (info, check, align, geodesic, decompose, regions, transfer,
-/// evaluate, convert, retarget) and the formats of io.
+/// Adds the operations of the toolkit (toolkit_operations.h) and the formats of io.
 void add_toolkit(OperationTable& table);
-/// Adds `markers`, which writes what the finder of landmarks finds on two heads to a file, and that
-/// file's format.
+/// Adds the operation `markers` and the format of its file. The operation searches for landmarks on
+/// two heads and writes them.
 void add_markers(OperationTable& table);
-/// Adds the operations `operations` and `formats`, which list the table they are in. The table must
-/// outlive the call.
+/// Adds the operations `operations` and `formats`, which list the table that contains them. The
+/// table must outlive the call.
 void add_listing(OperationTable& table);
 
 }  // namespace mimetra

@@ -10,7 +10,7 @@ namespace mimetra {
 
 namespace {
 
-/// What makes a crease at the regions' border less visible.
+/// Says how to make a crease at the regions' border less visible.
 std::string softer_border(const Parameters& parameters) {
   if (parameters.is_set("falloff")) return "use a larger --falloff";
   if (parameters.is_set("paint")) return "paint a wider border, or let it fade by --falloff";
@@ -23,7 +23,7 @@ std::string softer_border(const Parameters& parameters) {
   return "--falloff 0.3" + without + " lets the motion fade more softly";
 }
 
-/// A text of the pipeline, and how the command helps it.
+/// Adds advice about the command's options to a text of the pipeline.
 std::string in_command_terms(Topic topic, const std::string& text, const Parameters& parameters) {
   const std::string rest_option = parameters.find("source-rest") ? "--source-rest" : "--rest";
   switch (topic) {
@@ -139,14 +139,14 @@ void refuse(const OptionError& error, const Parameters& parameters) {
 namespace {
 
 constexpr std::string_view kQuoted = "option '";
-/// What somebody typed follows it, which stays as it is.
+/// Text before a word that the user typed, which keeps its spelling.
 constexpr std::string_view kUnknown = "unknown option ";
 
 bool is_of_a_name(char c) {
   return (c >= 'a' && c <= 'z') || c == '-';
 }
 
-/// What follows these may be an option's dashes.
+/// Characters before an option's dashes.
 bool parts_words(char c) {
   return std::string_view(" (,;:'").find(c) != std::string_view::npos;
 }
@@ -162,7 +162,7 @@ std::size_t end_of_name(const std::string& text, std::size_t begin) {
   return at;
 }
 
-/// An option that `text` names at `begin`; an empty name for none.
+/// Finds an option that `text` mentions at `begin`; the name is empty if there is none.
 Mention mention_at(const std::string& text, std::size_t begin) {
   if (text.compare(begin, kQuoted.size(), kQuoted) == 0) {
     const std::size_t name = begin + kQuoted.size();

@@ -8,16 +8,16 @@
 
 namespace mimetra {
 
-// What the pipeline says, in the words of the command's options.
+// Translates messages of the pipeline to the spelling of the command's options.
 
-/// The invocation's context, whose notes become warnings that name the options which help. It keeps
-/// copies of the parameters and of the log: set these first.
+/// Returns the invocation's context. Its notes become warnings that name helpful options. The
+/// context copies the parameters and the log, so set these first.
 Context with_notes_as_warnings(const Invocation& invocation);
 
-/// Throws what the command says where an option does not fit: UsageError, MismatchError.
+/// Throws the command's error for an option that does not fit: UsageError or MismatchError.
 [[noreturn]] void refuse(const OptionError& error, const Parameters& parameters);
 
-/// Does `work` of the pipeline; its errors name the command's options.
+/// Calls `work`, which uses the pipeline, and translates its errors to the command's options.
 template <typename Work>
 auto in_command_terms(const Parameters& parameters, const Work& work) {
   try {
@@ -27,16 +27,16 @@ auto in_command_terms(const Parameters& parameters, const Work& work) {
   }
 }
 
-/// A message in a host's words: what it says of options, "option 'overwrite'" as the libraries say
-/// or "--source-rest" and "-k" as operations do, as `spelled` has it, given the name without
-/// dashes. An unknown option stays as it was typed.
+/// Returns a message with the options in a host's spelling. The message may mention options as
+/// libraries do ("option 'overwrite'") or as operations do ("--source-rest", "-k"). `spelled`
+/// receives the name without dashes. An unknown option keeps its spelling.
 std::string with_options_spelled(const std::string& message,
                                  const std::function<std::string(const std::string&)>& spelled);
 
-/// As the command has it: "--force" for 'overwrite', "-k" for 'k'.
+/// Spelling of an option on the command line: "--force" for 'overwrite', "-k" for 'k'.
 std::string spelled_for_command(const std::string& option);
 
-/// As the libraries say: "option 'overwrite'".
+/// Spelling of an option in libraries: "option 'overwrite'".
 std::string spelled_for_library(const std::string& option);
 
 }  // namespace mimetra

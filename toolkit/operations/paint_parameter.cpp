@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kField = "field:";
 
-/// Names of fields that could be painted.
+/// Names of fields with one number per vertex.
 std::vector<std::string> scalar_fields(const std::vector<Field>& fields) {
   std::vector<std::string> names;
   for (const Field& field : fields) {
@@ -24,7 +24,7 @@ std::vector<std::string> scalar_fields(const std::vector<Field>& fields) {
   return names;
 }
 
-/// The weights that a field of the sequence holds.
+/// Reads the weights from a field of the sequence.
 Painting painting_of_field(const std::string& name, const NamedData& source) {
   const std::vector<Field>& fields = std::get<FieldSequence>(source.data).fields;
   const std::string place = source.name + ": field '" + name + "'";

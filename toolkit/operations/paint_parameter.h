@@ -8,20 +8,20 @@
 
 namespace mimetra {
 
-/// --paint: how much of the motion each vertex of the source takes, from `field:NAME`, a picture,
-/// or a list; see read_painting().
+/// --paint: each vertex's share of the source's motion, from `field:NAME`, a picture, or a list;
+/// see read_painting().
 Parameter paint_parameter();
 
-/// Exclusions by --paint: options and inputs that look for regions or name others, and weights of
+/// Exclusions by --paint: options and inputs that look for regions or give others, and weights of
 /// each region.
 std::vector<Exclusion> paint_exclusions();
 
-/// The region that --paint makes of the source's vertices; none where it is not given. Warns of
-/// what the painting's notes say. Throws MismatchError for a field that is not there or holds more
-/// than a number for each vertex, and what read_painting() and check_painting() throw.
+/// Returns the region that --paint makes of the source's vertices; empty without --paint. Warns
+/// with the painting's notes. Throws MismatchError for a field that does not exist or has several
+/// numbers per vertex, and what read_painting() and check_painting() throw.
 std::optional<GivenRegions> painted_region_of(const Invocation& invocation);
 
-/// Where the weights of a target's vertices came from, and how many are 1, between and 0.
+/// Reports the source of a target's vertex weights, and how many are 1, between 0 and 1, and 0.
 Json weights_report(const Eigen::VectorXd& weights, const Parameters& parameters,
                     const std::optional<Length>& falloff);
 

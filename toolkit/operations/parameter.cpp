@@ -11,7 +11,7 @@ namespace mimetra {
 
 namespace {
 
-/// "a," is "a" and an empty one; nothing holds none.
+/// Splits a text at commas: "a," gives "a" and ""; "" gives an empty list.
 std::vector<std::string> between_commas(const std::string& text) {
   std::vector<std::string> parts;
   for (std::size_t begin = 0; !text.empty() && begin <= text.size();) {
@@ -28,13 +28,14 @@ std::string shortest(double number) {
   return error == std::errc() ? std::string(buffer, end) : std::to_string(number);
 }
 
-/// `inwards`: std::ceil for a minimum, std::floor for a maximum.
+/// Text of a bound. `inwards` rounds it for whole numbers: std::ceil for a minimum, std::floor for
+/// a maximum.
 std::string bound_text(ParameterKind kind, const std::optional<double>& bound,
                        double (*inwards)(double)) {
   if (!bound) return "";
   const bool whole = kind == ParameterKind::integer || kind == ParameterKind::integer_list;
   if (!whole) return shortest(*bound);
-  // Values of whole numbers are 32 bits wide, whatever their range.
+  // Whole numbers have 32 bits, whatever their range.
   return std::to_string(std::lround(std::clamp<double>(inwards(*bound), -INT32_MAX, INT32_MAX)));
 }
 
@@ -55,7 +56,7 @@ std::optional<Number> parse_number(std::string_view text) {
   return number;
 }
 
-/// A number, or a fraction as in 24000/1001.
+/// Parses a number, or a fraction such as 24000/1001.
 std::optional<double> parse_ratio(std::string_view text) {
   const auto slash = text.find('/');
   const auto number = parse_number<double>(text.substr(0, slash));
@@ -65,7 +66,7 @@ std::optional<double> parse_ratio(std::string_view text) {
   return *number / *divisor;
 }
 
-/// "; 80 % is 0.8" where a share was likely meant in percent; "" elsewhere.
+/// Hint "; 80 % is 0.8" if the user probably meant a share in percent, otherwise "".
 std::string percent_hint(const Parameter& parameter, std::string_view found) {
   const bool is_share = parameter.kind == ParameterKind::number && parameter.maximum == 1;
   if (!is_share && parameter.kind != ParameterKind::length) return "";
@@ -339,7 +340,7 @@ std::optional<double> Parameters::bytes(const std::string& name) const {
   const auto unit = stripped(kUnits);
   const double power = unit == kUnits.npos ? 0 : static_cast<double>(unit + 1);
   const auto number = parse_number<double>(text);
-  // Nobody means so few bytes.
+  // Fewer bytes are probably a missing unit.
   constexpr double kLeastWithoutUnit = 1e6;
   const double bytes = number ? *number * std::pow(is_binary ? 1024 : 1000, power) : 0;
   const bool has_unit = power > 0 || (!is_binary && bytes >= kLeastWithoutUnit);
@@ -355,11 +356,11 @@ Length Parameters::length(const std::string& name) const {
 
 namespace {
 
-/// "!NAME=VALUE", taken apart.
+/// Parts of a term "!NAME=VALUE".
 struct Term {
   bool is_negated;
   std::string name;
-  std::string value;  ///< or empty
+  std::string value;  ///< may be empty
 
   explicit Term(const std::string& text) : is_negated(text.front() == '!') {
     const std::size_t begin = is_negated ? 1 : 0, equals = std::min(text.find('='), text.size());
@@ -367,7 +368,7 @@ struct Term {
     if (equals < text.size()) value = text.substr(equals + 1);
   }
 
-  /// As people type it: "--select transfer", "-k".
+  /// Spelling on the command line: "--select transfer", "-k".
   std::string option(const Parameters& parameters) const {
     const Parameter* parameter = parameters.find(name);
     const std::string option = parameter ? parameter->option() : "--" + name;

@@ -14,13 +14,13 @@
 
 namespace mimetra {
 
-/// The request is wrong whatever the data: an unknown name, a value out of its range.
+/// The request is wrong whatever the data: an unknown name, a value out of range.
 class UsageError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
 };
 
-/// A parameter's value; monostate where none was given and there is no default.
+/// A parameter's value; monostate if it has neither a value nor a default.
 using ParameterValue = std::variant<std::monostate, bool, std::int64_t, double, std::string,
                                     std::vector<std::int64_t>>;
 
@@ -32,10 +32,10 @@ enum class ParameterKind {
   length,        ///< std::string: "0.1" of the rest pose's diameter, or "12abs"
   choice,        ///< std::string, one of `choices`
   text,          ///< std::string
-  file  ///< std::string, a path, or one of `choices`; "group:NAME" stands for all "group:..."
+  file  ///< std::string, a path or one of `choices`; the choice "group:NAME" allows any "group:..."
 };
 
-/// One parameter of an operation: what option parser, help, and the dialogs of hosts are made of.
+/// One parameter of an operation, from which hosts make option parser, help and dialogs.
 struct Parameter {
   std::string name;  ///< "radius" is --radius, "k" is -k
   ParameterKind kind;
@@ -45,24 +45,24 @@ struct Parameter {
   std::optional<double> minimum = {};
   std::optional<double> maximum = {};
   std::vector<std::string> choices = {};
-  bool several = false;  ///< of a file: several paths, or `choices`, between commas
-  /// Heading under which help lists it; none for what its operation is about.
+  bool several = false;  ///< for a file: several paths, or `choices`, separated by commas
+  /// Heading in the help; empty for the parameters of the operation's own subject.
   std::string group = "";
-  /// What the short help says instead of `help`; of those under a heading it tells the names only
-  /// where this is empty.
+  /// Text of the short help, instead of `help`. If it is empty, parameters under a heading show
+  /// only their names.
   std::string brief = "";
 
   /// `--radius` or `-k`.
   std::string option() const;
-  /// The ends of the range as people type them, whole for whole numbers; empty where it is open.
+  /// Ends of the range as text, whole numbers for integers; empty if there is no limit.
   std::string minimum_text() const;
   std::string maximum_text() const;
 };
 
-/// True for one of the words that stand beside paths; "group:NAME" is where "group:..." is.
+/// True if `text` is a word that may replace a path; "group:NAME" matches any "group:...".
 bool is_word(const Parameter& parameter, const std::string& text);
 
-/// A choice among the values of an enum.
+/// Declares a choice among the values of an enum.
 template <NamedChoice Enum>
 Parameter choice_parameter(std::string name, Enum fallback, std::string help) {
   return {std::move(name),
@@ -75,7 +75,7 @@ Parameter choice_parameter(std::string name, Enum fallback, std::string help) {
           choice_names<Enum>()};
 }
 
-/// A path, or one of the values of an enum.
+/// Declares a parameter that takes a path or one of the values of an enum.
 template <NamedChoice Enum>
 Parameter file_parameter(std::string name, std::optional<Enum> fallback, std::string help) {
   ParameterValue value;
@@ -84,17 +84,17 @@ Parameter file_parameter(std::string name, std::optional<Enum> fallback, std::st
           choice_names<Enum>()};
 }
 
-/// Reads a value as people type it. Throws UsageError that names option, range and what was found.
+/// Parses a value. Throws UsageError that gives the option, the range and the text found.
 ParameterValue parse_value(const Parameter& parameter, const std::string& text);
 
 /// Checks a value's type and range. Throws UsageError.
 void check_value(const Parameter& parameter, const ParameterValue& value);
 
-/// A value as people type it; empty for none.
+/// Converts a value to the text that parse_value() reads; empty for no value.
 std::string to_text(const ParameterValue& value);
 std::string to_text(const Length& length);
 
-/// Values by name, with the defaults of those that were not set.
+/// Values by name, with defaults for values that were not set.
 class Parameters {
  public:
   explicit Parameters(std::vector<Parameter> declared = {});
@@ -104,13 +104,13 @@ class Parameters {
 
   const std::vector<Parameter>& declared() const { return declared_; }
   const Parameter* find(const std::string& name) const;
-  /// True where a value was set, as against the default.
+  /// True if a value was set, rather than taken from the default.
   bool is_set(const std::string& name) const { return values_.contains(name); }
-  /// The paths that were set, without the words that stand beside paths.
+  /// The paths that were set, without words that replace a path.
   std::vector<std::string> files() const;
-  /// Those of one parameter of files; none where none is set.
+  /// The paths of one parameter; empty if none is set.
   std::vector<std::string> paths(const std::string& name) const;
-  /// What stands between commas, or by default there: paths, and words that stand beside them.
+  /// The items between commas, or of the default: paths, and words that replace a path.
   std::vector<std::string> listed(const std::string& name) const;
   const ParameterValue& value(const std::string& name) const;
 
@@ -120,16 +120,16 @@ class Parameters {
   const std::string& text(const std::string& name) const;
   const std::vector<std::int64_t>& integers(const std::string& name) const;
   std::optional<std::string> optional_text(const std::string& name) const;
-  /// A value of choice_parameter(). Throws std::invalid_argument where it is not one of the enum's.
+  /// Value of choice_parameter(). Throws std::invalid_argument if the enum does not have it.
   template <NamedChoice Enum>
   Enum choice(const std::string& name) const {
     if (const auto value = choice_of<Enum>(text(name))) return *value;
     throw std::invalid_argument("parameter '" + name + "': no such choice as '" + text(name) + "'");
   }
   Length length(const std::string& name) const;
-  /// "4G" or "500M" in bytes (k, M, G and T are powers of 1000, KiB to TiB of 1024, large and small
-  /// letters alike); nothing where none is given. Throws UsageError for any other text, and for a
-  /// number below a million without a unit.
+  /// Converts "4G" or "500M" to bytes; empty if no value is given. The units k, M, G and T are
+  /// powers of 1000, and KiB to TiB are powers of 1024, in large or small letters. Throws
+  /// UsageError for any other text, and for a number below a million without a unit.
   std::optional<double> bytes(const std::string& name) const;
 
  private:
@@ -137,30 +137,31 @@ class Parameters {
   std::map<std::string, ParameterValue> values_;
 };
 
-/// Options, inputs and outputs of an operation that do not go together:
+/// Options, inputs and outputs of an operation that exclude each other:
 ///
 ///     {{"falloff", "regions-out"}, {"full"}, "there are no regions with --full"}
 ///
-/// A term is the name of an input, an output or an option. It holds if the call has it: an output
-/// that is asked for, a flag that is true, a list of files that names one, any other option that is
-/// set. NAME=VALUE holds if the option has this value, also by default. A "!" negates a term.
+/// A term is the name of an input, an output or an option. It holds if the call has the input or
+/// requests the output. It also holds for a flag that is true, a list of files with a path, and any
+/// other option that is set. NAME=VALUE holds if the option has this value, also by default. A "!"
+/// negates a term.
 struct Exclusion {
-  /// None of these may hold
+  /// None of these terms may hold
   std::vector<std::string> refused;
-  /// beside one of these. "curve !per-region" holds if both parts do.
+  /// together with one of these. "curve !per-region" holds if both parts do.
   std::vector<std::string> beside;
   std::string reason;
 };
 
-/// Whether a call has an input, or asks for an output, of this name.
+/// Whether a call has an input, or requests an output, of this name.
 using HasValue = std::function<bool(const std::string& name)>;
 
-/// The message for the first term that is refused, "--falloff: there are no regions with --full";
-/// none if all that the call has goes together.
+/// Message for the first term that is refused, "--falloff: there are no regions with --full"; empty
+/// if nothing is refused.
 std::optional<std::string> refusal(const std::vector<Exclusion>& exclusions,
                                    const Parameters& parameters, const HasValue& has_value);
 
-/// All elements of some lists, in order.
+/// Concatenates lists.
 template <typename Element>
 std::vector<Element> concatenated(std::initializer_list<std::vector<Element>> lists) {
   std::vector<Element> all;

@@ -20,7 +20,8 @@ namespace mimetra {
 
 namespace {
 
-/// Manifests keep all digits; a rotation that was typed or rounded by another tool passes too.
+/// Manifests keep all digits. The tolerance admits rotations that were typed, or rounded by other
+/// tools.
 constexpr double kRotationTolerance = 1e-4;
 
 RigidTransform transform_of(const Json& json) {
@@ -100,7 +101,7 @@ KeptMotion read_motion(const std::string& path, int frames) {
 
 namespace {
 
-/// What a set of vertices is named by, besides a file.
+/// How a text describes a set of vertices, apart from a file.
 enum class VertexSetKind { component, group, material, field };
 
 constexpr std::string_view choice_name(VertexSetKind value) {
@@ -117,7 +118,7 @@ constexpr std::string_view choice_name(VertexSetKind value) {
   return {};
 }
 
-/// Vertices under a name, such as those of a group.
+/// Vertices with a name, such as the vertices of a group.
 struct NamedVertices {
   std::string name;
   std::vector<bool> vertices;
@@ -219,12 +220,12 @@ std::vector<bool> named_vertices(const std::string& text, const FieldSequence& s
 
 namespace {
 
-/// A value as people type it.
+/// Text of a value as on the command line.
 std::string typed(const Json& value) {
   return value.is_string() ? value.get<std::string>() : json_text(value);
 }
 
-/// [10, 30] and ["a.txt", "b.txt"] likewise.
+/// Joins values by commas, such as [10, 30] and ["a.txt", "b.txt"].
 std::string listed_values(const Json& values) {
   std::string text;
   for (const Json& value : values) text += (text.empty() ? "" : ",") + typed(value);

@@ -15,7 +15,7 @@ namespace {
 constexpr const char* kDecompositionGroup = "Decomposition";
 constexpr const char* kSourceGroup = "Rest pose and head motion";
 
-/// What stands for an anchor besides the number of a vertex.
+/// Words that replace the number of an anchor vertex.
 enum class AnchorWord { source, centroid };
 
 constexpr std::string_view choice_name(AnchorWord value) {
@@ -28,8 +28,8 @@ constexpr std::string_view choice_name(AnchorWord value) {
   return {};
 }
 
-/// An anchor that nobody names holds nothing where fixed vertices do; one that is named is refused
-/// there.
+/// Sets an anchor only if the user gives one. If fixed vertices hold the mesh, the default has no
+/// effect, but a given anchor is refused.
 void apply_anchor(const Parameters& parameters, SolveOptions& options) {
   if (!parameters.is_set("anchor")) return;
   const std::string& text = parameters.text("anchor");
@@ -97,7 +97,7 @@ Parameter memory_parameter() {
           "machine has left"};
 }
 
-/// Vertices where regions may lie.
+/// --only and --without, the vertices on which regions may lie.
 BoundParameters<AnalysisOptions> place_parameters() {
   const auto bound = [](const std::string& name, bool wanted) {
     return [name, wanted](const Parameters& parameters, AnalysisOptions& options,
@@ -124,7 +124,7 @@ BoundParameters<AnalysisOptions> place_parameters() {
   return list.under(kRegionGroup);
 }
 
-/// --per-region and what belongs to it.
+/// --per-region and its options.
 BoundParameters<SolveOptions> regional_parameters() {
   BoundParameters<SolveOptions> list;
   return list
@@ -217,7 +217,7 @@ BoundParameters<AnalysisOptions> analysis_parameters() {
            "and 12 over two edges of each triangle")
       .add(&AnalysisOptions::distances, distance_parameters())
       .add(place_parameters())
-      // Only refuses what is no amount of memory: within_memory() reads it.
+      // Only checks the amount of memory; within_memory() reads it.
       .add(memory_parameter(),
            [](const Parameters& parameters, AnalysisOptions&) { parameters.bytes("memory"); });
   return list.under(kDecompositionGroup);
@@ -355,7 +355,7 @@ std::vector<Exclusion> solving_exclusions() {
 void check_given_components(const Invocation& invocation) {
   const auto* components = invocation.find<Components>("components");
   const Parameters& parameters = invocation.parameters;
-  // The same number comes of the line that made them, with the components instead.
+  // The number of the line that made the components is allowed, with the components added.
   if (components && parameters.is_set("k") && parameters.integer("k") != components->count()) {
     throw UsageError("-k: has no effect on --components, which are decomposed already");
   }
@@ -363,7 +363,7 @@ void check_given_components(const Invocation& invocation) {
 
 namespace {
 
-/// Whether triangles of a target may have no partner in the source.
+/// Whether triangles of a target may lack a partner in the source.
 bool pairs_targets(const Invocation& invocation) {
   if (!invocation.parameters.paths("correspondence").empty()) return true;
   const FrameSource& frames = *invocation.get<FieldSequence>("source").frames;
@@ -437,7 +437,7 @@ bool solves_for_vertices(const Parameters& parameters, const BlendshapeModel& ta
 
 Context within_memory(const Invocation& invocation) {
   const auto allowed = invocation.parameters.bytes("memory");
-  // If the process has more already, less than nothing: what is missing counts that.
+  // May be negative if the process already has more memory. Messages then give the total shortage.
   return invocation.context.with_memory(allowed ? *allowed - MemoryUse::of_this_process().now
                                                 : available_memory());
 }

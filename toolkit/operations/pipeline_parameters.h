@@ -11,7 +11,7 @@ namespace mimetra {
 
 // The pipeline's options as parameters, shared by operations.
 
-// Headings of the help under which they stand.
+// Headings of these parameters in the help.
 inline constexpr const char* kRegionGroup = "Regions";
 inline constexpr const char* kSolvingGroup = "Solving";
 
@@ -20,19 +20,19 @@ BoundParameters<SourceOptions> alignment_parameters();
 /// --source-rest of a transfer, and --rest of its decomposition.
 BoundParameters<SourceOptions> source_rest_parameters();
 BoundParameters<AnalysisOptions> analysis_rest_parameters();
-/// --rest of a sequence that is decomposed.
+/// --rest of a sequence to be decomposed.
 BoundParameters<SourceOptions> rest_parameters();
 /// --geodesics and --weld.
 BoundParameters<DistanceOptions> distance_parameters();
-/// -k, by default as many as `defaults` has.
+/// -k; its default comes from `defaults`.
 BoundParameters<AnalysisOptions> count_parameters(const AnalysisOptions& defaults = {});
-/// All others of a decomposition but for its rest pose, with those of distances, and with --only
-/// and --without, which name vertices of the sequence.
+/// All other parameters of a decomposition except the rest pose. Includes distances, and --only and
+/// --without, which select vertices of the sequence.
 BoundParameters<AnalysisOptions> analysis_parameters();
 /// --select, --triangles, --radius, --region and --coverage.
 BoundParameters<RegionChoiceOptions> region_parameters();
 BoundParameters<RegionChoiceOptions> completion_parameters();
-/// --space and what belongs to each.
+/// --space and the parameters of each space.
 BoundParameters<SolveOptions> solving_parameters();
 
 /// --axes.
@@ -69,55 +69,56 @@ BoundParameters<Options> blendshape_parameters() {
            "up or down, and in or out; all: jawOpen or mouthClose, too");
 }
 
-/// The options with what -k says where regions are chosen for the transfer: discs at most, and any
-/// number of them where nobody says so.
+/// Returns the options with -k as the largest number of discs, if regions are chosen for the
+/// transfer. Without -k the number has no limit.
 RegionChoiceOptions with_most_discs(RegionChoiceOptions options, const Parameters& parameters);
 
-/// Options that only regions by energy depend on.
+/// Options that affect only regions by energy.
 const std::vector<std::string>& options_of_energy();
 
-/// Those of them, but for -k, that the decomposition depends on.
+/// Options of these, except -k, that affect the decomposition.
 const std::vector<std::string>& options_of_decomposition();
 
 /// Exclusions of a decomposition's options by --components and by --select transfer, and of
 /// --select transfer by --space vertex.
 std::vector<Exclusion> selection_exclusions();
 
-/// Throws UsageError if the call is given components, and -k asks for another number of them.
+/// Throws UsageError if the call has components, and -k requests another number of them.
 void check_given_components(const Invocation& invocation);
 
-/// Lets regions fade out where no target has expressions and no option says how they end: a hard
-/// border would tear the mesh.
+/// Sets the falloff kBareFalloff if no target has expressions and no option decides the border. A
+/// hard border would tear the mesh.
 void set_usual_border(const Invocation& invocation, SolveOptions& options);
 
-/// The call's context, within the memory of --memory: by default what the machine has left.
+/// Returns the call's context with the limit --memory, by default the memory that the machine has
+/// left.
 Context within_memory(const Invocation& invocation);
 
 /// Exclusions among the options of a solve, and of --rest by --select transfer.
 std::vector<Exclusion> solving_exclusions();
 
-/// Throws UsageError for options of a solve that would do nothing for the call's targets:
-/// --outside-weight without triangles outside, --per-region if one is solved for vertices.
+/// Throws UsageError for options of a solve without effect on the call's targets: --outside-weight
+/// without triangles outside, --per-region if a target is solved for vertices.
 void check_solving(const Invocation& invocation);
 
-/// Throws what check_border() throws for the targets of a call, as the command says it.
+/// Throws what check_border() throws for the targets of a call, with the command's option names.
 void check_border(const Invocation& invocation, const GivenRegions* given,
                   const SolveOptions& options);
 
-/// The options, with what an input that is a sequence says of itself.
+/// Adds a sequence input's name to the options, and whether a model drives it.
 SourceOptions described(SourceOptions options, const NamedData& input);
 
-/// The optional input `components` of a call.
+/// Returns the optional input `components` of a call.
 std::optional<GivenComponents> given_components(const Invocation& invocation);
 
-/// The output `components-out` of operations that decompose on the way to something else.
+/// Declares the output `components-out` of operations that decompose as a step.
 Output components_output();
 
-/// True for the vertex space of --space, and where a target has no expressions to solve for.
+/// True for --space vertex, and if a target has no expressions.
 bool solves_for_vertices(const Parameters& parameters, const BlendshapeModel& target);
 
-/// How the decomposition of a sequence keeps within --memory. The plan includes what is kept of
-/// frames that are slow to read. It is empty for components that are given.
+/// Plan that keeps a sequence's decomposition within --memory. Includes the stored frames of
+/// sources that are slow to read. Empty if components are given.
 DecompositionPlan analysis_plan(const Invocation& invocation, const FrameSource& source,
                                 const AnalysisOptions& options);
 

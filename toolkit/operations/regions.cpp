@@ -24,7 +24,7 @@ struct RegionsCall {
   RegionChoiceOptions regions = {};
   /// Also write support_k and component_k of each region.
   bool component_fields = false;
-  /// In the script for ParaView.
+  /// Axis for the script for ParaView.
   UpAxis up = UpAxis::y;
   /// Share of the vertices on which regions are found; by default all.
   std::optional<double> simplify = {};
@@ -77,16 +77,16 @@ std::vector<Exclusion> regions_exclusions() {
 
 struct Found {
   Regions regions;
-  /// None where components are given.
+  /// Empty if components are given.
   std::optional<HeadMotionTaken> head_motion = {};
-  /// That the regions come from; none where they are chosen for a transfer.
+  /// Components from which the regions come; empty for regions chosen for a transfer.
   std::optional<Components> components = {};
-  /// On which they were found, where those are not all.
+  /// Number of vertices on which the regions were found, if fewer than all.
   std::optional<std::size_t> simplified_vertices = {};
   double seconds = 0;
 };
 
-/// On some of the vertices.
+/// Finds regions on some of the vertices.
 Found found_on_simplified(const Invocation& invocation, const RegionsCall& call,
                           const Context& context) {
   const Source source = prepare_source(invocation.get<FieldSequence>("sequence").frames,
@@ -99,7 +99,7 @@ Found found_on_simplified(const Invocation& invocation, const RegionsCall& call,
   return found;
 }
 
-/// By components that are given, or those of the sequence without its motion.
+/// Finds regions by given components, or by components of the sequence without its head motion.
 Found found_by_energy(const Invocation& invocation, const RegionsCall& call,
                       const Context& context) {
   if (call.simplify) return found_on_simplified(invocation, call, context);
@@ -120,7 +120,7 @@ Found found_by_energy(const Invocation& invocation, const RegionsCall& call,
   return found;
 }
 
-/// By what they tell of the target's expressions.
+/// Finds regions by their information about the target's expressions.
 Found found_for_transfer(const Invocation& invocation, const RegionsCall& call,
                          const Context& context) {
   const Stopwatch stopwatch;
@@ -140,7 +140,7 @@ Found found_for_transfer(const Invocation& invocation, const RegionsCall& call,
   return found;
 }
 
-/// The colour of each region, by its number; -1 is what none covers.
+/// Colour of each region by its number; -1 for vertices outside all regions.
 std::map<int, Color> colors_of(const RegionData& regions) {
   const std::vector<Field>& fields = regions.fields.fields;
   const Field& region = *std::ranges::find(fields, "region", &Field::name);
@@ -152,7 +152,7 @@ std::map<int, Color> colors_of(const RegionData& regions) {
   return by_region;
 }
 
-/// A string of Python: JSON's escapes are Python's, save those of characters beyond 16 bits.
+/// Returns a string of Python. JSON's escapes are Python's, except for characters beyond 16 bits.
 std::string quoted(const std::string& text) {
   return json_text(text);
 }
@@ -164,7 +164,7 @@ std::string list_of(const Eigen::RowVector3d& point) {
   return text.str();
 }
 
-/// `name = value` lines that say which colour and name each value has.
+/// Returns `name = value` lines with the colour and name of each value.
 std::string categories(const std::map<int, Color>& colors) {
   std::ostringstream names, values;
   values.precision(3);
@@ -179,7 +179,7 @@ std::string categories(const std::map<int, Color>& colors) {
          "]\n";
 }
 
-/// Orthographic, a little from the side and from above.
+/// Returns an orthographic camera, a little from the side and from above.
 std::string camera(const Positions& rest, UpAxis up) {
   const auto axes = [up](double right, double above, double front) {
     return up == UpAxis::y ? Eigen::RowVector3d(right, above, front)
@@ -256,9 +256,10 @@ if len(sys.argv) == 2 and sys.argv[1].endswith(".png"):
     SaveScreenshot(sys.argv[1], view, ImageResolution=view.ViewSize)
 )";
 
-/// A script that shows the regions of a written series (.pvd or .vtp) in ParaView (`paraview
-/// --script=VIEW.py`): neighbours in different colours with a legend, the time, and the face from
-/// the front. Under pvpython it draws the picture that is named behind it.
+/// Returns a script that shows the regions of a written series (.pvd or .vtp) in ParaView
+/// (`paraview --script=VIEW.py`). Neighbours have different colours with a legend. The view shows
+/// the time, and the face from the front. pvpython draws a picture instead, to a file given after
+/// the script.
 std::string paraview_view(const RegionData& regions, const std::filesystem::path& series,
                           UpAxis up) {
   const std::string name = series.stem().string();
@@ -267,7 +268,7 @@ std::string paraview_view(const RegionData& regions, const std::filesystem::path
          camera(regions.fields.frames->rest(), up) + kEnd;
 }
 
-/// What the script for ParaView opens: the main output.
+/// Path of the main output, which the script for ParaView opens.
 std::filesystem::path series_of(const Invocation& invocation) {
   const auto out = invocation.wanted.find("out");
   if (out != invocation.wanted.end() && !out->second.empty()) {
@@ -280,7 +281,7 @@ std::filesystem::path series_of(const Invocation& invocation) {
   throw UsageError("--paraview: needs regions that ParaView opens, with -o NAME.pvd or NAME.vtp");
 }
 
-/// Refuses what the run cannot do, before it is done.
+/// Reads the options. Refuses impossible requests before the run.
 RegionsCall read_regions_call(const Invocation& invocation) {
   if (invocation.wants("paraview")) series_of(invocation);
   check_given_components(invocation);
@@ -297,7 +298,7 @@ RegionsCall read_regions_call(const Invocation& invocation) {
   return call;
 }
 
-/// A decomposition of some of the vertices, and what chooses these.
+/// Plan of a decomposition on some of the vertices, with the choice of these vertices.
 DecompositionPlan of_share(double share, DecompositionPlan plan, const FrameSource& sequence,
                            const AnalysisOptions& options, const Context& context) {
   // Discs are measured along the whole mesh.

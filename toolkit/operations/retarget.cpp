@@ -25,20 +25,20 @@ namespace mimetra {
 
 namespace {
 
-/// Options of a map's weights too; the others are about meshes.
+/// Options of a map's weights and of meshes' weights, and --axes for meshes.
 BoundParameters<RetargetOptions> retarget_parameters() {
   auto list = axes_parameters<RetargetOptions>();
   return list.add("smoothness", RetargetOptions::kSmoothness, "time constant of smooth weights")
       .add(blendshape_parameters<RetargetOptions>());
 }
 
-/// What comes of a call, by meshes or by a map.
+/// Result of a call, by meshes or by a map.
 struct Retargeted {
   std::vector<std::string> source_names = {}, target_names = {};
-  Eigen::MatrixXd driving = {};  ///< the source's weights (F x D_s)
-  Eigen::MatrixXd weights = {};  ///< the target's (F x D_t)
+  Eigen::MatrixXd driving = {};  ///< weights of the source (F x D_s)
+  Eigen::MatrixXd weights = {};  ///< weights of the target (F x D_t)
   std::optional<Retargeting> map = {};
-  /// As a file, where the rigs' faces differ.
+  /// Contents of a file, if the rigs' faces differ.
   std::optional<std::string> correspondence = {};
   bool by_map = false;
   Json report = Json::object();
@@ -66,7 +66,7 @@ BoundParameters<SequenceSource> driving_parameters() {
   return list.add(weight_scale_parameter());
 }
 
-/// The weights and their times of those frames that are asked for, which drive `expressions`.
+/// Returns the weights that drive `expressions`, and their times, in the selected frames.
 WeightTrack chosen_track(const Invocation& invocation,
                          const std::vector<std::string>& expressions) {
   const SequenceSource source = driving_parameters().read(invocation.parameters);
@@ -77,7 +77,7 @@ WeightTrack chosen_track(const Invocation& invocation,
   note_odd_times(track);
   for (const std::string& note : track.notes) {
     const std::string text = name + ": " + note;
-    // What reading said is not said again.
+    // Reading has reported these notes already.
     const std::vector<std::string>& said = weights.origin.notes;
     if (std::ranges::find(said, text) == said.end()) invocation.warn(text);
   }
@@ -93,7 +93,7 @@ WeightTrack chosen_track(const Invocation& invocation,
   return track;
 }
 
-/// Sets the source's weights, and says which names of the track drive it and which do not.
+/// Sets the source's weights. Reports the columns of the track and the expressions without a match.
 void drive_source(const Invocation& invocation, const WeightTrack& track, Retargeted& made) {
   const std::string& name = invocation.input("weights").name;
   try {
@@ -119,16 +119,16 @@ void drive_source(const Invocation& invocation, const WeightTrack& track, Retarg
   made.report["undriven"] = match.undriven_expressions;
 }
 
-/// What a call asks for.
+/// Inputs and options of a call.
 struct RetargetCall {
   RetargetOptions options;
   BlendshapeTransferOptions of_map;
-  /// In place of two models.
+  /// Replaces two models.
   std::optional<Retargeting> map;
   WeightTrack track;
 };
 
-/// A call by a map, before it is solved.
+/// Reads a call by a map, without solving it.
 Retargeted read_map(const Invocation& invocation, const RetargetCall& call) {
   Retargeted made;
   made.by_map = true;
@@ -145,7 +145,7 @@ Retargeted read_map(const Invocation& invocation, const RetargetCall& call) {
   return made;
 }
 
-/// The weights of a map, which keeps the rigs.
+/// Returns the weights of a kept map.
 Eigen::MatrixXd weights_by_map(const Retargeted& made, const RetargetCall& call,
                                const Context& context) {
   const Eigen::VectorXd& times = call.track.times;
@@ -175,7 +175,7 @@ void add_transfer(const TransferredTarget& transferred, Retargeted& made) {
 /// A call by meshes, before it is solved.
 struct Driven {
   std::shared_ptr<const Animation> animation;
-  /// Its source is that.
+  /// Has `animation` as its source.
   Invocation invocation;
   Retargeted made = {};
 };
@@ -235,7 +235,7 @@ std::string summary_of(const WeightDifference& difference) {
          readable(difference.largest, 2) + " at most";
 }
 
-/// Columns of the target's weights and of the source's that have one name.
+/// Columns of the target's and the source's weights with a common name.
 struct SharedNames {
   std::vector<Eigen::Index> target = {}, source = {};
 
@@ -255,8 +255,8 @@ struct SharedNames {
   }
 };
 
-/// Says which expressions nothing moves, and how far those are from the source's that have its
-/// names.
+/// Reports expressions of the target that nothing moves. Also reports how far weights with a common
+/// name differ from the source's.
 void add_weights(const Invocation& invocation, Retargeted& made) {
   std::vector<std::string> still;
   for (Eigen::Index j = 0; j < made.weights.cols(); ++j) {
@@ -278,7 +278,7 @@ void add_weights(const Invocation& invocation, Retargeted& made) {
                   summary_of(difference) + '\n';
 }
 
-/// How far the kept map's weights are from those of the meshes.
+/// Reports how far the kept map's weights differ from the weights by meshes.
 void add_map(const Invocation& invocation, const RetargetCall& call, Retargeted& made) {
   if (made.by_map || !invocation.wants("map-out")) return;
   const WeightDifference difference =
@@ -287,7 +287,7 @@ void add_map(const Invocation& invocation, const RetargetCall& call, Retargeted&
   made.summary += "the map's weights differ from these by " + summary_of(difference) + '\n';
 }
 
-/// How far a plain matrix' weights are, as they are and clipped.
+/// Reports how far a plain matrix's weights differ, both unbounded and clipped.
 void add_matrix(const Invocation& invocation, const Eigen::MatrixXd& matrix, Retargeted& made) {
   const Eigen::MatrixXd unbounded = multiplied(matrix, made.driving);
   const WeightDifference of_clipped = difference_of(clipped(unbounded, *made.map), made.weights);
@@ -302,7 +302,7 @@ void add_matrix(const Invocation& invocation, const Eigen::MatrixXd& matrix, Ret
                   summary_of(of_clipped));
 }
 
-/// Those of the options that are set.
+/// Returns the options of these that are set.
 std::vector<std::string> set_of(const Parameters& parameters,
                                 const std::vector<std::string>& names) {
   std::vector<std::string> options;
@@ -312,7 +312,7 @@ std::vector<std::string> set_of(const Parameters& parameters,
   return options;
 }
 
-/// Says what neither a map nor a matrix keeps of the options.
+/// Warns about options that a map or a matrix does not keep.
 void note_options(const Invocation& invocation) {
   const std::vector<std::string> again =
       set_of(invocation.parameters, {"ridge", "l1", "smoothness"});

@@ -19,7 +19,7 @@ namespace mimetra {
 namespace {
 
 struct RigCall {
-  /// A folder.
+  /// Folder of examples.
   std::optional<std::filesystem::path> examples = {};
   bool estimate_weights = false;
   RigOptions rig = {};
@@ -63,7 +63,7 @@ std::string guess(const std::string& word, const std::vector<std::string>& known
   return nearest.empty() ? "there are " + listed(known, 60) : "did you mean '" + nearest + "'?";
 }
 
-/// Weights of the row that names an example, by expression.
+/// Returns an example's weights by expression, from its row of examples.csv.
 Eigen::VectorXd given_weights(const ExampleFolder& folder, Eigen::Index row,
                               const std::vector<std::string>& expressions,
                               const std::string& path) {
@@ -87,7 +87,7 @@ Eigen::VectorXd given_weights(const ExampleFolder& folder, Eigen::Index row,
   return weights;
 }
 
-/// What an example is. Throws MismatchError where nothing tells.
+/// Returns the meaning of an example. Throws MismatchError if its name and its row give none.
 ExampleMeaning meaning_of(const ExampleShape& shape, const ExampleFolder& folder,
                           const ShapeBasis& expressions, const RigCall& call) {
   const auto weighted = std::ranges::find(folder.weighted, shape.name);

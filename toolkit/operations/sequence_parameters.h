@@ -5,15 +5,16 @@
 
 namespace mimetra {
 
-// The options of io as parameters of what reads and writes sequences.
+// The options of io as parameters for reading and writing sequences.
 
-/// --frames, and --fps of all that has no times.
+/// --frames, and --fps for sources without times.
 BoundParameters<SequenceSource> frame_parameters();
 /// --weight-scale.
 BoundParameters<SequenceSource> weight_scale_parameter();
-/// All that a sequence is read by: --weights, --topology, --frames and --fps.
+/// All parameters for reading a sequence: --weights, --topology, --frames and --fps.
 BoundParameters<SequenceSource> sequence_parameters();
-/// --double of mesh files, --single of arrays, and --format of folders, which have --double too.
+/// --double for mesh files, --single for arrays, and --format for folders, which also have
+/// --double.
 BoundParameters<SequenceWriteOptions> mesh_writing_parameters();
 BoundParameters<SequenceWriteOptions> array_writing_parameters();
 BoundParameters<SequenceWriteOptions> folder_writing_parameters();

@@ -19,22 +19,22 @@ BoundParameters<SimplifyOptions> simplify_parameters() {
   return list.add("share", SimplifyOptions::kShare, "of the vertices that are kept");
 }
 
-/// Choosing vertices, beside writing the frames.
+/// Progress at which the vertices are chosen; writing the frames takes the rest.
 constexpr double kChoosing = 0.8;
 
-/// Share of the surface at rest that is gone.
+/// Share of the surface at rest that is lost.
 double lost_area(const Simplification& made, const FrameSource& given) {
   const double before = vertex_areas(given.rest(), given.triangles()).sum();
   const Positions kept = given.rest()(made.vertices, Eigen::all);
   return before > 0 ? 1 - vertex_areas(kept, made.connectivity->triangles).sum() / before : 0;
 }
 
-/// Warns of what is not as asked for.
+/// Warns about results that differ from the request.
 void warn_of(const Simplification& made, const FieldSequence& given, double share,
              const Invocation& invocation) {
   const std::string& name = invocation.input("sequence").name;
   const double reached = static_cast<double>(made.vertices.size()) / given.frames->vertices();
-  // Rounding up, and the last vertex that could not go.
+  // Allows for rounding up, and for the last vertex that could not be removed.
   if (reached > 1.05 * share + 1e-3) {
     invocation.warn(name + ": " + percent(reached) + " of the vertices are left, expected " +
                     percent(share) + ": no more can go without a fold" +
@@ -47,7 +47,7 @@ void warn_of(const Simplification& made, const FieldSequence& given, double shar
     invocation.warn(name + ": " + std::to_string(made.folded) +
                     " triangles are turned over in some frame; keep a larger share");
   }
-  // Wrinkles and rounding are less.
+  // Wrinkles and rounding lose less.
   constexpr double kLost = 0.05;
   if (const double lost = lost_area(made, *given.frames); lost > kLost) {
     invocation.warn(name + ": " + percent(lost) +

@@ -61,7 +61,7 @@ Operation subdivide_operation() {
                         "subdivide head.obj --scheme midpoint --times 2 -o fine.obj"};
   operation.run = run_subdivide;
   operation.memory = [](const Invocation& invocation) {
-    // Weights, edges and faces of a finer vertex.
+    // Weights, edges and faces per finer vertex, in bytes.
     constexpr double kOfVertex = 600;
     const FieldSequence& sequence = invocation.get<FieldSequence>("sequence");
     const double finer = std::pow(4.0, subdivide_parameters().read(invocation.parameters).times);

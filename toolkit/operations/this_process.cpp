@@ -18,7 +18,7 @@ constexpr double kKilobyte = 1024;
 
 int sharing_processes = 1;
 
-/// "NAME: NUMBER kB" lines, in bytes.
+/// Reads "NAME: NUMBER kB" lines and returns bytes.
 std::map<std::string, double> kilobytes_in(const std::string& path) {
   std::map<std::string, double> bytes;
   std::ifstream file(path);
@@ -32,7 +32,7 @@ std::map<std::string, double> kilobytes_in(const std::string& path) {
   return bytes;
 }
 
-/// What a control group may still take; +infinity without a limit.
+/// Memory left in the control group; +infinity without a limit.
 double left_in_group() {
   std::ifstream limit("/sys/fs/cgroup/memory.max"), use("/sys/fs/cgroup/memory.current");
   double most = 0, now = 0;
@@ -67,7 +67,7 @@ std::filesystem::path this_binary() {
   Dl_info info{};
   const bool known = dladdr(reinterpret_cast<const void*>(&this_binary), &info) != 0;
   const std::string name = known && info.dli_fname ? info.dli_fname : "";
-  // A program's name is what it was called by, which may not be a path.
+  // A program's name is the name that called it, which may not be a path.
   std::error_code error;
   return std::filesystem::canonical(name.find('/') == std::string::npos ? "/proc/self/exe" : name,
                                     error);

@@ -4,8 +4,7 @@
 
 namespace mimetra {
 
-/// Bytes of memory that this process has, and the most it ever had; 0 where the system does not
-/// tell.
+/// Memory of this process in bytes, now and at its peak; 0 if the system does not report it.
 struct MemoryUse {
   double now = 0;
   double peak = 0;
@@ -13,15 +12,15 @@ struct MemoryUse {
   static MemoryUse of_this_process();
 };
 
-/// Bytes that the machine, or the group of processes that this one is confined with, has left
-/// besides what this process has; +infinity where the system does not tell.
+/// Bytes of memory that are left for this process, on the machine and in its control group.
+/// +infinity if the system does not report it.
 double available_memory();
 
-/// available_memory() is one's share of it from now on, where so many processes of a run are on
-/// this machine. \pre Nobody asks for it at the same time.
+/// Makes available_memory() return one process's share, for `processes` processes of a run on this
+/// machine. \pre no other thread calls available_memory()
 void share_memory(int processes);
 
-/// The program or library that holds this code; empty where the system does not tell.
+/// Path of the program or library that contains this code; empty if the system does not report it.
 std::filesystem::path this_binary();
 
 }  // namespace mimetra

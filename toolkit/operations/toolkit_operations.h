@@ -19,7 +19,7 @@ Operation simplify_operation();
 Operation subdivide_operation();
 Operation retarget_operation();
 
-/// Adds the formats of io but for those of tables (weight_tables.h).
+/// Adds the formats of io except tables (weight_tables.h).
 void add_formats(OperationTable& table);
 
 }  // namespace mimetra

@@ -74,8 +74,8 @@ bool asks_for_regions(const Invocation& invocation) {
       .has_value();
 }
 
-/// All triangles, because the call says so, or by default: without expressions to solve for, what
-/// lies outside the regions would stay behind.
+/// True if the call requests all triangles, or by default. Without expressions, vertices outside
+/// the regions would stay behind.
 bool takes_all_triangles(const Invocation& invocation) {
   if (invocation.parameters.flag("full")) return true;
   const auto has_expressions = [](const NamedData& target) {
@@ -108,7 +108,7 @@ NamedData weights_of(const NamedData& target, const Solution& solution) {
                                                 solution.sequence->times()})};
 }
 
-/// `has_own_regions` where the source's are not those of this target.
+/// `has_own_regions` if the report's common regions are not this target's.
 Json report_of(const NamedData& target, const TransferredTarget& transferred, bool has_own_regions,
                const Parameters& parameters, const TransferOptions& options) {
   const auto& [solution, regions, similarity, error, pairing, match, error_seconds, openings,
@@ -164,13 +164,13 @@ std::string summary_of(const NamedData& target, const TransferredTarget& transfe
          (match ? "; " + summary_of(*match) : "") + '\n' + summary_of(openings);
 }
 
-/// False if the call names regions, or takes all triangles.
+/// False if the call gives regions, or takes all triangles.
 bool looks_for_regions(const Invocation& invocation) {
   return !takes_all_triangles(invocation) && !invocation.find<RegionData>("regions") &&
          !invocation.parameters.optional_text("paint");
 }
 
-/// Refuses options that would change regions whose vertices have weights.
+/// Refuses options that would change regions with vertex weights.
 void check_given_weights(const Invocation& invocation) {
   const auto* given = invocation.find<RegionData>("regions");
   if (!given || given->regions.weights.size() == 0) return;
@@ -212,7 +212,7 @@ void check_outputs(const Invocation& invocation, const TransferOptions& options)
   }
 }
 
-/// The call's options. Throws and warns before anything is computed.
+/// Returns the call's options. Throws and warns before anything is computed.
 TransferOptions checked_options(const Invocation& invocation) {
   const NamedData& source = invocation.input("source");
   warn_of_guessed_rate(invocation, source.name,
@@ -234,7 +234,7 @@ void foresee_transfer(const Invocation& invocation) {
   check_targets(invocation, targets_of(invocation), source, options.solve);
 }
 
-/// What each target's results are, in the order of the targets.
+/// Adds the results of each target, in the order of the targets.
 void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
                  const TransferOptions& options, TransferResult& result) {
   const std::vector<NamedData>& targets = invocation.inputs.at("target");
@@ -264,7 +264,7 @@ void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
     std::vector<NamedData>& all = outcome.outputs["out"];
     all.push_back({targets[t].name, FieldSequence()});
     NamedData& out = all.back();
-    // A host that takes values shows them; formats write them where they hold fields.
+    // Hosts that take values show these fields. Formats with fields write them.
     std::vector<Field>& shown = is_written ? out.more_fields : made.fields;
     if (transferred.pairing) {
       const Correspondence& pairs = transferred.pairing->triangles();
@@ -314,7 +314,7 @@ Outcome run_transfer(const Invocation& invocation) {
   return outcome;
 }
 
-/// How many regions there are, or may be.
+/// Number of regions, or its upper limit.
 int region_count(const Invocation& invocation, const TransferOptions& options) {
   if (const RegionData* given = invocation.find<RegionData>("regions")) {
     return static_cast<int>(given->regions.regions.size());
@@ -332,7 +332,8 @@ DecompositionPlan plan_of_transfer(const Invocation& invocation, const TransferO
                        options.analysis);
 }
 
-/// Decomposition, then one target after the other, whose results are kept.
+/// Peak of the decomposition, and of one target after the other. All targets' results stay in
+/// memory.
 double memory_of_transfer(const Invocation& invocation) {
   const FieldSequence& held = invocation.get<FieldSequence>("source");
   const TransferOptions options = transfer_parameters().read(invocation.parameters);
@@ -347,7 +348,7 @@ double memory_of_transfer(const Invocation& invocation) {
       solutions += regional_bytes(frames, person_of(target), region_count(invocation, options),
                                   invocation.context);
     }
-    // Results of a source in memory are there, too.
+    // If the source is in memory, so are the results.
     if (held.is_in_memory()) solutions += frame_bytes(frames);
   }
   return std::max(plan_of_transfer(invocation, options).bytes, solutions + most_selection);

@@ -18,7 +18,7 @@ constexpr const char* kLiveLink = ".livelink.csv";
 
 using Paths = std::vector<std::filesystem::path>;
 
-/// Of Live Link Face's form.
+/// Whether a path is in Live Link Face's format.
 bool is_live_link(const std::filesystem::path& path) {
   return lower_case(path.filename().string()).ends_with(kLiveLink);
 }
@@ -34,7 +34,7 @@ ReadValue read_weight_table(const std::string& text, const ReadRequest&, const C
   return read;
 }
 
-/// The weights of a sequence that a model's weights drive.
+/// Returns the weights of a sequence that a model's weights drive.
 WeightTrack track_of(const FieldSequence& sequence, const std::filesystem::path& target) {
   const auto* animation = dynamic_cast<const Animation*>(sequence.frames.get());
   if (!animation) {
@@ -66,8 +66,8 @@ std::vector<std::string> live_link_losses(const Data& data, const std::filesyste
   return notes;
 }
 
-/// An expression may be called as a column of times or of numbers of frames is, and would be read
-/// as one.
+/// Refuses expressions with the name of a column of times or of frame numbers, which reading would
+/// mistake for such a column.
 void check_names(const Table& weights, bool timed, const std::filesystem::path& target) {
   const auto other =
       std::find_if(weights.columns.begin() + (timed ? 1 : 0), weights.columns.end(), is_no_weight);
@@ -76,7 +76,7 @@ void check_names(const Table& weights, bool timed, const std::filesystem::path& 
                       "', as a column that holds no weights is; rename the expression");
 }
 
-/// A format of tables, or of a sequence's weights as such a table.
+/// Writes a table, or a sequence's weights as a table.
 template <std::string (Table::*Text)() const>
 Paths write_table(const Data& data, const WriteRequest& request, const Context&) {
   const auto* given = std::get_if<Table>(&data);

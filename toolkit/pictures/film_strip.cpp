@@ -40,7 +40,7 @@ void check(const std::vector<FieldSequence>& sequences, const StripOptions& opti
   }
 }
 
-/// Frames that all rows have: sequences that move are of one length.
+/// Number of frames that all rows share. Sequences that move must have equal lengths.
 int common_frames(const std::vector<FieldSequence>& sequences, const StripOptions& options) {
   int frames = 1;
   for (std::size_t row = 0; row < sequences.size(); ++row) {
@@ -85,12 +85,12 @@ std::vector<int> shown_frames(int frames, const StripOptions& options) {
   return {};
 }
 
-/// Read when it is drawn: a picture of some frames reads no others.
+/// Reads a pose when it is drawn, so that a picture of some frames reads no others.
 Positions pose(const FieldSequence& fields, int frame) {
   return FrameBlock(*fields.frames, fields.frames->frames() == 1 ? 0 : frame, 1).frame(0);
 }
 
-/// Values of triangles on their vertices: the largest.
+/// Values of triangles on their vertices: the largest of each vertex.
 Eigen::VectorXd on_vertices(const Eigen::VectorXd& values, const FrameSource& sequence) {
   Eigen::VectorXd result =
       Eigen::VectorXd::Constant(sequence.vertices(), std::numeric_limits<double>::quiet_NaN());
@@ -110,7 +110,7 @@ const Field& field_of(const FieldSequence& fields, const std::string& name,
   throw MismatchError(row + ": no field '" + name + "'; it can be coloured by " + known);
 }
 
-/// One value a vertex: a field of several columns by its length.
+/// One value per vertex; fields with several columns give their length.
 Eigen::VectorXd vertex_values(const Field& field, const FrameSource& sequence) {
   const Eigen::VectorXd values = field.values.cols() == 1
                                      ? Eigen::VectorXd(field.values.col(0))
@@ -118,13 +118,14 @@ Eigen::VectorXd vertex_values(const Field& field, const FrameSource& sequence) {
   return field.location == Field::Location::vertices ? values : on_vertices(values, sequence);
 }
 
-/// Whole numbers that are names: regions, and those of which the negative ones mean "none".
+/// Whether the whole numbers of a field are names: regions, or numbers with negative ones for
+/// "none".
 bool is_category(const Field& field) {
   return field.integer && field.values.cols() == 1 && field.values.size() > 0 &&
          (field.name == "region" || field.values.minCoeff() < 0);
 }
 
-/// All of a mesh as a picture shows it.
+/// View of a whole mesh as the picture shows it.
 MeshView whole_view(const TriMesh& mesh, const View& view) {
   MeshView whole;
   whole.axes << view.right.transpose(), view.up.transpose(), view.towards_eye.transpose();
@@ -140,8 +141,8 @@ MeshView whole_view(const TriMesh& mesh, const View& view) {
   return whole;
 }
 
-/// How far each pixel of a square of `side` pixels is from one of another number, diagonals counted
-/// as steps.
+/// Distance of each pixel in a square of `side` pixels to the nearest pixel with another number, in
+/// steps that may be diagonal.
 std::vector<int> margins_of(const std::vector<int>& numbers, int side) {
   std::vector<int> margins(numbers.size(), 0);
   const auto index = [side](int column, int row) {
@@ -172,7 +173,7 @@ std::vector<int> margins_of(const std::vector<int>& numbers, int side) {
   return margins;
 }
 
-/// The colours of one row.
+/// Colours of one row.
 class RowPainter {
  public:
   RowPainter(const std::vector<FieldSequence>& sequences, const StripOptions& options,
@@ -201,7 +202,7 @@ class RowPainter {
     return bar;
   }
 
-  /// Of numbers that are names, but for "none".
+  /// Legend of numbers that are names, without "none".
   Legend legend() const {
     std::map<int, Color> colors;
     for (std::size_t v = 0; v < numbers_.size(); ++v) {
@@ -214,12 +215,12 @@ class RowPainter {
 
   bool is_crisp() const { return !categories_.empty(); }
 
-  /// The numbers, each where most of its own colour is around it as `view` sees the mesh.
+  /// Labels with the numbers, each placed as deep inside its colour as possible in `view`.
   std::vector<TileLabel> labels(const Positions& pose, const View& view) const {
     if (numbers_.empty()) return {};
     const TriMesh mesh{pose, sequences_[row_].frames->connectivity()};
     const MeshView from = whole_view(mesh, view);
-    if (!(from.side > 0)) return {};  // seen as one point
+    if (!(from.side > 0)) return {};  // seen as a single point
     const MeshPainter painter(mesh);
     const std::vector<SeenPlace> places = painter.draw(from).places;
     std::vector<int> seen(places.size(), -1);
@@ -256,7 +257,7 @@ class RowPainter {
   }
 
  private:
-  /// Lengths in each of the frames.
+  /// Measures lengths in each of the frames.
   void measure(StripColor color, const std::vector<int>& frames) {
     const FieldSequence& own = sequences_[row_];
     unit_ = options_.unit;
@@ -275,7 +276,7 @@ class RowPainter {
     }
   }
 
-  /// The same in all columns.
+  /// Shows a field, which is the same in all columns.
   void show(const Field& field, std::size_t columns) {
     const FrameSource& sequence = *sequences_[row_].frames;
     values_.assign(columns, vertex_values(field, sequence));
@@ -312,8 +313,8 @@ class RowPainter {
   const StripOptions& options_;
   std::size_t row_;
   std::vector<Eigen::VectorXd> values_;  // by column; empty for none
-  std::string name_, unit_;              // of the values
-  std::vector<int> numbers_;             // that are names, of vertices; empty for others
+  std::string name_, unit_;              // name and unit of the values
+  std::vector<int> numbers_;             // numbers of vertices that are names; otherwise empty
   std::vector<Color> categories_;
 };
 
@@ -362,7 +363,7 @@ Sheet film_strip(const std::vector<FieldSequence>& sequences, const StripOptions
       tile.colors = painter.colors(column, tiles.bar);
       tile.crisp = painter.is_crisp();
       tile.turn = turn_of(options, column);
-      // Once is enough where nothing but the pose changes.
+      // One label is enough if only the pose changes.
       if (column == 0 || options.layout == StripLayout::turntable) {
         tile.labels = painter.labels(tile.positions, view_of(options.viewpoint, tile.turn));
       }

@@ -13,12 +13,11 @@
 namespace mimetra {
 
 enum class StripLayout {
-  strip,     ///< a column a frame
-  frame,     ///< one frame
-  turntable  ///< one frame from all around
+  strip,     ///< one column per frame
+  frame,     ///< a single frame
+  turntable  ///< a single frame from all around
 };
 
-/// As people choose it.
 constexpr std::string_view choice_name(StripLayout value) {
   switch (value) {
     case StripLayout::strip:
@@ -31,14 +30,13 @@ constexpr std::string_view choice_name(StripLayout value) {
   return {};
 }
 
-/// What colours a sequence, besides its fields.
+/// Colouring of a sequence, besides its fields.
 enum class StripColor {
   none,
   displacement,  ///< distance from the rest pose
   difference     ///< distance from the row above
 };
 
-/// As people choose it.
 constexpr std::string_view choice_name(StripColor value) {
   switch (value) {
     case StripColor::none:
@@ -51,26 +49,26 @@ constexpr std::string_view choice_name(StripColor value) {
   return {};
 }
 
-/// Or the field of that name.
+/// A measured colour, or the name of a field.
 using RowColor = std::variant<StripColor, std::string>;
 
 struct StripOptions {
   StripLayout layout = StripLayout::strip;
-  /// Of a turntable, and of a strip where `frames` names none; its frames are spread evenly.
+  /// Columns of a turntable, or of a strip without `frames`, whose frames are then spread evenly.
   int columns = 8;
-  /// Frames shown, 0-based; of StripLayout::frame and a turntable the first one only.
+  /// Frames shown, 0-based. StripLayout::frame and StripLayout::turntable use only the first.
   std::vector<int> frames = {};
-  /// What colours each sequence. One for all, or one each.
+  /// Colouring of each sequence: one for all, or one for each.
   std::vector<RowColor> colors = {StripColor::none};
-  /// One for each sequence, or none.
+  /// Title of each sequence, or empty.
   std::vector<std::string> titles = {};
-  /// Value of the darkest colour; by default each row's largest.
+  /// Value of the darkest colour; by default the largest of each row.
   std::optional<double> maximum = {};
   Viewpoint viewpoint = {};
   int tile_height = 320;
-  int letters = 0;        ///< height of letters, pixels; 0 for what suits the tiles
-  std::string unit = {};  ///< of positions
-  bool edges = false;     ///< whether those of polygons are drawn
+  int letters = 0;        ///< height of letters, pixels; 0 to fit the tiles
+  std::string unit = {};  ///< unit of the positions
+  bool edges = false;     ///< whether edges of polygons are drawn
 
   static constexpr Option kLayout{"layout", &StripOptions::layout};
   static constexpr Option kColumns{
@@ -87,10 +85,10 @@ struct StripOptions {
   }
 };
 
-/// Sequences as rows of a sheet. A sequence of one frame stands still in all columns. Throws
-/// MismatchError that names the row: another number of frames, a field that it does not have (with
-/// those it has), a difference from a row with another number of vertices; std::invalid_argument
-/// for options out of range.
+/// Arranges sequences as rows of a sheet. A sequence of one frame repeats in all columns. Throws
+/// MismatchError that names the row for another number of frames or an unknown field (with the
+/// known ones). Throws it also for a difference from a row with another number of vertices, or if a
+/// requested frame does not exist. Throws std::invalid_argument for options out of range.
 Sheet film_strip(const std::vector<FieldSequence>& sequences, const StripOptions& options = {});
 
 }  // namespace mimetra

@@ -90,7 +90,8 @@ Sheet sheet_of(const Invocation& invocation) {
   return film_strip(sequences, options_of(invocation));
 }
 
-/// Rows have one scale, at which one in another unit is a dot, or fills what the others are in.
+/// Warns about rows in another unit. All rows have one scale, so such a row would be a dot or
+/// shrink the others to dots.
 void warn_of_sizes(const std::vector<NamedData>& inputs, const Invocation& invocation) {
   const auto size = [](const NamedData& input) {
     return spread(std::get<FieldSequence>(input.data).frames->rest());

@@ -6,10 +6,10 @@
 
 namespace mimetra {
 
-/// Adds .png of pictures and of tables, folders of pictures, and the operation `render`.
+/// Adds the format .png of pictures and tables, folders of pictures, and the operation `render`.
 void add_pictures(OperationTable& table);
 
-/// --yaw, --pitch and --up.
+/// Options --yaw, --pitch and --up.
 BoundParameters<Viewpoint> viewpoint_parameters();
 
 }  // namespace mimetra

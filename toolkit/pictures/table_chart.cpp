@@ -15,7 +15,7 @@ std::size_t column_of(const Table& table, const std::string& name) {
   return static_cast<std::size_t>(found - table.columns.begin());
 }
 
-/// Rows of one word, of all where it is null.
+/// Rows with one word, or all rows if `word` is null.
 ChartSeries line_of(const Table& table, std::size_t x, std::size_t y, const std::string* word) {
   ChartSeries line;
   line.name = word ? *word : table.columns[y];
@@ -28,7 +28,7 @@ ChartSeries line_of(const Table& table, std::size_t x, std::size_t y, const std:
   return line;
 }
 
-/// Words in the order in which they occur.
+/// Distinct words in order of appearance.
 std::vector<std::string> words_in(const Table& table) {
   std::vector<std::string> words;
   for (const std::string& word : table.words) {
@@ -55,7 +55,7 @@ std::vector<ChartSeries> lines_of(const Table& table) {
   return lines;
 }
 
-/// A logarithmic scale has ticks where numbers span more than this.
+/// A logarithmic scale has ticks if numbers span more than this factor.
 constexpr double kManyTimes = 10;
 
 bool spans_magnitudes(const std::vector<ChartSeries>& lines) {

@@ -5,10 +5,10 @@
 
 namespace mimetra {
 
-/// The chart of a table: what Table::picture says, a line for each word of the word column, or all
-/// columns against the first. Cells that are empty are left out, as are lines without a point. The
-/// scale of y is logarithmic where a table says what it shows, and that spans more than a power of
-/// ten above 0. Throws MismatchError for a table that has nothing to show.
+/// Chart of a table. Table::picture selects two columns, with a line for each word of the word
+/// column. By default all columns are drawn against the first. Empty cells and lines without points
+/// are left out. With Table::picture, the y scale is logarithmic if y is positive and spans more
+/// than a power of ten. Throws MismatchError for a table without numbers to show.
 Chart chart_of(const Table& table);
 
 }  // namespace mimetra

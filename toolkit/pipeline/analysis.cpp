@@ -22,7 +22,7 @@ int almost_welded_at(const Positions& rest, const Triangles& triangles,
   return options.welding == Welding::exact ? almost_welded_vertices(rest, triangles) : 0;
 }
 
-/// The rest pose that was made for frames with head motion, where that was taken out.
+/// Aligns a rest pose for frames with head motion to the source, if that motion was taken out.
 Positions aligned(const Positions& rest, const Source& source) {
   if (source.motion.empty()) return rest;
   return rigid_fit(rest, source.sequence->rest()).apply(rest);
@@ -32,7 +32,7 @@ Positions first_pose(const FrameSource& sequence) {
   return FrameBlock(sequence, 0, 1).frame(0);
 }
 
-/// The parts with a vertex inside, which may be empty for all.
+/// Parts with a vertex inside; `inside` may be empty for all.
 std::vector<bool> parts_with(const std::vector<bool>& inside, const SurfaceParts& parts) {
   std::vector<bool> with(parts.areas.size(), inside.empty());
   for (std::size_t v = 0; v < inside.size(); ++v) {
@@ -128,7 +128,7 @@ std::shared_ptr<const FrameSource> work_of(const Source& source, const AnalysisO
 
 Eigen::VectorXd motion_on_vertices(const FrameSource& sequence, const std::vector<bool>& inside,
                                    const Context& context) {
-  // So many parts for any number of threads: their sums are the same bytes.
+  // The number of parts does not depend on the threads, so the sums are the same bytes.
   constexpr int kParts = 8;
   const int frames = sequence.frames();
   std::vector<Eigen::VectorXd> sums(kParts, Eigen::VectorXd::Zero(sequence.vertices()));
@@ -229,27 +229,27 @@ class KeptVertices : public FrameSource {
   std::vector<VertexIndex> kept_;
 };
 
-/// Some vertices of a mesh, decomposed as if there were no others, but for distances, which still
-/// run along the whole surface.
+/// Decomposes some vertices of a mesh as if there were no others. Distances still run along the
+/// whole surface.
 class Cutout {
  public:
-  /// `inside` (N), true for those that are cut out. \pre one is
+  /// `inside` (N) marks the vertices to cut out. \pre at least one is true
   explicit Cutout(const std::vector<bool>& inside);
 
   int vertices() const { return static_cast<int>(kept_.size()); }
-  /// Frames and rest pose of the kept vertices (n), and the triangles that have no others.
+  /// Frames and rest pose of the kept vertices (n), and the triangles between kept vertices.
   std::shared_ptr<const FrameSource> of(std::shared_ptr<const FrameSource> whole) const;
-  /// Distances between kept vertices, of `distances` between all of them.
+  /// Distances between kept vertices, from `distances` between all vertices.
   DistanceFunction of(DistanceFunction distances) const;
-  /// The kept entries (n) of one value a vertex (N).
+  /// The kept entries (n) of one value per vertex (N).
   std::vector<int> of(const std::vector<int>& values) const;
-  /// Components of the kept vertices as components of the whole mesh: zero outside, where the
-  /// support maps are 1.
+  /// Turns components of the kept vertices into components of the whole mesh. Outside, they are
+  /// zero and the support maps are 1.
   Components put_back(Components components, const FrameSource& whole) const;
 
  private:
   std::vector<VertexIndex> kept_;      ///< ascending (n)
-  std::vector<VertexIndex> position_;  ///< in kept_, -1 for the others (N)
+  std::vector<VertexIndex> position_;  ///< index in kept_, -1 for the others (N)
 };
 
 Cutout::Cutout(const std::vector<bool>& inside) : position_(inside.size(), -1) {
@@ -307,7 +307,7 @@ Components Cutout::put_back(Components components, const FrameSource& whole) con
   return components;
 }
 
-/// Longest side that any single frame's bounding box has: the reference's unit of length.
+/// Longest side of any single frame's bounding box: the reference's unit of length.
 double largest_frame_extent(const FrameSource& sequence) {
   double largest = 0;
   for (int f = 0; f < sequence.frames(); ++f) {
@@ -316,8 +316,8 @@ double largest_frame_extent(const FrameSource& sequence) {
   return largest;
 }
 
-/// Vertices that were welded at rest and part by more than this share of the diameter are
-/// reported: well above float32 rounding, well below what one sees.
+/// Share of the diameter from which a parting of welded vertices is reported: well above float32
+/// rounding, well below visible gaps.
 constexpr double kPartingShare = 1e-4;
 
 void note_parting(const FrameSource& sequence, const AnalysisOptions& options,
@@ -354,7 +354,7 @@ Components decomposed_inside(const std::shared_ptr<const FrameSource>& work,
   return cutout.put_back(decompose(*cutout.of(work), options, context), *work);
 }
 
-/// The vertices inside that are some of a triangle with area; empty for all.
+/// Vertices inside that belong to a triangle with area; empty for all.
 std::vector<bool> on_surface(std::vector<bool> inside, const SurfaceDistances& distances,
                              int vertices) {
   const std::vector<VertexIndex>& loose = distances.vertices_without_face();
@@ -364,7 +364,7 @@ std::vector<bool> on_surface(std::vector<bool> inside, const SurfaceDistances& d
   return inside;
 }
 
-/// What is in both, each of which may be empty for all.
+/// Vertices in both sets; an empty set contains all vertices.
 std::vector<bool> both(std::vector<bool> inside, const std::vector<bool>& also) {
   if (inside.empty() || also.empty()) return inside.empty() ? also : inside;
   for (std::size_t v = 0; v < inside.size(); ++v) inside[v] = inside[v] && also[v];
@@ -437,7 +437,7 @@ Analysis analyse(const Source& source, const AnalysisOptions& options, const Con
         sequence, of_surface.inside, decomposition,
         beside_distances(options.distances.method, work.vertices(), decomposition.count, context));
   } catch (const MismatchError& error) {
-    // All frames may move elsewhere.
+    // Other vertices may move.
     const std::string text = error.what();
     if (options.inside.empty() || !text.starts_with("nothing moves")) throw;
     throw MismatchError("where regions may lie " + text);
@@ -467,7 +467,8 @@ void check_components(const GivenComponents& given, const FrameSource& sequence)
 
 namespace {
 
-/// Components whose centres are inside; one that moves nothing there has none.
+/// Moves centres outside to the strongest vertex inside; a component without motion there loses its
+/// centre.
 Components centered_inside(Components components, const std::vector<bool>& inside) {
   if (inside.empty()) return components;
   Eigen::VectorXd weights(components.vertices());

@@ -11,13 +11,12 @@
 
 namespace mimetra {
 
-/// Which vertices count as one for distances.
+/// Which vertices count as one vertex in distances.
 enum class Welding {
-  exact,  ///< those at one place (UV seams)
+  exact,  ///< vertices at the same position (UV seams)
   none
 };
 
-/// As people choose it.
 constexpr std::string_view choice_name(Welding value) {
   switch (value) {
     case Welding::exact:
@@ -28,7 +27,7 @@ constexpr std::string_view choice_name(Welding value) {
   return {};
 }
 
-/// Of positions (N x 3).
+/// Vertices that count as one, for positions (N x 3).
 Weld weld_of(const Positions& positions, Welding welding);
 
 struct DistanceOptions {
@@ -40,39 +39,38 @@ struct DistanceOptions {
   static constexpr auto declared() { return std::tuple(kMethod, kWelding); }
 };
 
-/// Distances along a mesh. Notes triangles and vertices that had to be left out, and seams that
-/// rounding opened. Throws std::invalid_argument as SurfaceDistances does, and for options out of
-/// range.
+/// Computes distances along a mesh. Notes triangles and vertices that had to be left out, and seams
+/// that rounding opened. Throws std::invalid_argument as SurfaceDistances does, and for options out
+/// of range.
 SurfaceDistances distances_along(const Positions& rest, const Triangles& triangles,
                                  const DistanceOptions& options = {}, const Context& = {});
 
-/// What the heat method takes for one mesh, with the fill-in of its factors: measured on surfaces
-/// of 7 to 325 thousand vertices.
+/// Memory of the heat method for one mesh, with the fill-in of its factors. Measured on surfaces of
+/// 7 to 325 thousand vertices.
 inline constexpr double kHeatBytesPerVertex = 3700;
 
-/// Bytes that distances from several sources take besides what planned_decomposition() counts, if
-/// each thread asks from one source at a time: exact ones, and CGAL's, whose object each thread
-/// has for itself.
+/// Bytes that distances from several sources need beyond what planned_decomposition() counts. Each
+/// thread queries one source at a time. Exact distances need such memory, and so does CGAL's
+/// method, because each thread keeps its own CGAL object.
 double distance_bytes(GeodesicMethod method, Eigen::Index vertices, int sources, const Context&);
 
-/// The context with the memory that these distances leave. Throws MismatchError if they take more
-/// than there is.
+/// Returns the context with the memory that these distances leave. Throws MismatchError if they
+/// need more memory than the context has.
 Context beside_distances(GeodesicMethod method, Eigen::Index vertices, int sources, const Context&);
 
-/// Distances between which a support map rises, absolute.
+/// Distances between which a support map rises from 0 to 1, absolute.
 struct SupportRange {
   double d_min;
   double d_max;
 };
 
-/// In the unit of `diameter`, of which the two are shares. Throws OptionError
-/// (Topic::support_range) unless d_min is below d_max.
+/// Converts both lengths to the unit of `diameter`; relative lengths are shares of it. Throws
+/// OptionError (Topic::support_range) unless d_min is below d_max.
 SupportRange support_range(const Length& d_min, const Length& d_max, double diameter);
 
-/// The rest pose of a decomposition.
+/// Rest pose of a decomposition.
 enum class RestPose { first, mean };
 
-/// As people choose it.
 constexpr std::string_view choice_name(RestPose value) {
   switch (value) {
     case RestPose::first:
@@ -85,17 +83,17 @@ constexpr std::string_view choice_name(RestPose value) {
 
 enum class Compatibility {
   none,
-  /// The reference implementation to the letter: lengths are shares of the longest side that any
-  /// single frame has, X is divided by its standard deviation, signs are decided as there, ten
-  /// iterations run unless another number is asked for, all of them, the last is returned, and the
-  /// rest pose is the first frame unless one is asked for. All vertices count alike, whatever part
-  /// they lie on.
+  /// Follows the reference implementation to the letter:
+  /// - Lengths are shares of the longest side of any single frame's bounding box.
+  /// - X is divided by its standard deviation, and signs are decided as in the reference.
+  /// - All iterations run, ten by default, and the last one is returned.
+  /// - The rest pose is the first frame, unless a rest pose is given.
+  /// - All vertices count alike, whatever part they belong to.
   splocs2013,
-  /// The same, and eq. 10 and 12 sum over two edges of each triangle as they are written.
+  /// Follows splocs2013, and sums eq. 10 and 12 over two edges of each triangle, as printed.
   paper
 };
 
-/// As people choose it.
 constexpr std::string_view choice_name(Compatibility value) {
   switch (value) {
     case Compatibility::none:
@@ -111,16 +109,17 @@ constexpr std::string_view choice_name(Compatibility value) {
 struct AnalysisOptions {
   /// Number of components K.
   int count = 30;
-  /// A frame, the mean of all, or a given pose (N x 3); by default the source's.
+  /// First frame, mean of all frames, or a given pose (N x 3). Default: the source's rest pose.
   std::optional<std::variant<RestPose, Positions>> rest = {};
-  /// Distance up to which sparsity costs nothing, and from which it costs all.
+  /// Sparsity costs nothing up to d_min from a component's centre, and the full price from d_max
+  /// on.
   Length d_min = Length::share(DecompositionOptions::kMinimumShare);
   Length d_max = Length::share(DecompositionOptions::kMaximumShare);
   Compatibility compatibility = Compatibility::none;
-  /// Where components and regions may lie (N), empty for everywhere. What the other vertices do
-  /// changes nothing: components are zero there, and no centre or region lies there.
+  /// Vertices on which components and regions may lie (N), empty for all. The other vertices change
+  /// nothing: components are zero there, and no centre or region lies there.
   std::vector<bool> inside = {};
-  /// As in DecompositionOptions. A compatibility runs all iterations, and refuses a tolerance.
+  /// See DecompositionOptions. A compatibility runs all iterations and refuses a tolerance.
   double sparsity = DecompositionOptions().sparsity;
   double rho = DecompositionOptions().rho;
   std::optional<int> iterations = {};
@@ -156,65 +155,71 @@ struct AnalysisOptions {
   }
 };
 
-/// Components of a sequence, the distances along their rest pose, where regions may lie (N, or
-/// empty), and which vertices are one.
+/// Components of a sequence and the distances along their rest pose. Also says which vertices
+/// regions may contain (N, or empty) and how vertices are welded.
 struct Analysis {
   Components components;
   SurfaceDistances distances;
   std::vector<bool> inside = {};
   double seconds = 0;
   Welding welding = Welding::exact;
-  /// Diameter of the moving_parts(), of which lengths are shares, but for those of a compatibility.
+  /// Diameter of the moving_parts(). Relative lengths are shares of it, except d_min and d_max with
+  /// a compatibility.
   double size = 0;
 };
 
-/// The source's frames with the rest pose that analyse() decomposes them about.
+/// Returns the source's frames with the rest pose that analyse() uses.
 std::shared_ptr<const FrameSource> work_of(const Source& source, const AnalysisOptions& options);
 
-/// Share of the motion energy, squared distances from the rest pose, on each vertex (N), of that on
-/// those `inside` (N, empty for all); 0 where nothing moves.
+/// Share of each vertex (N) in the motion energy of the vertices `inside` (N, empty for all). The
+/// energy is the squared distance from the rest pose. All shares are 0 if nothing moves.
 Eigen::VectorXd motion_on_vertices(const FrameSource& sequence,
                                    const std::vector<bool>& inside = {},
                                    const Context& context = {});
 
-/// Connected parts of a surface, each weighing its area as a share of the largest part's, of which
-/// only vertices `inside` (N, or empty) count: what moves a tooth counts as little as a tooth is of
-/// the skin, however dense its mesh. Empty where there is one part, or nothing has area.
+/// Connected parts of a surface, each weighted by its area as a share of the largest part's area.
+/// Areas count only vertices `inside` (N, or empty for all). So a tooth weighs as little as its
+/// share of the skin, however dense its mesh. Empty if there is one part, or if nothing has area.
 PartWeights part_weights(const Positions& rest, const Triangles& triangles,
                          const std::vector<bool>& inside = {}, Welding welding = Welding::exact);
 
-/// The decomposition of these options, but for lengths, distances and part weights.
+/// Converts the options, except lengths, distances and part weights.
 DecompositionOptions decomposition_options(const AnalysisOptions& options);
 
-/// How many of the components asked for are made. Within d_min of its centre a component may move
-/// everything, so that F frames tell F components apart there; of the surface there are so many
-/// such discs. More components would die, or repeat others. A compatibility takes what is asked
-/// for. `size` is what d_min is a share of.
+/// Number of components that analyse() computes, at most options.count. Within d_min of its centre
+/// a component may move everything, so F frames distinguish only F components there. The limit is F
+/// times the number of such discs on the surface; more components would die or repeat others.
+/// Further limits are 3 N and the number of vertices inside. A compatibility has no limit. d_min is
+/// a share of `size`.
 int component_count(const FrameSource& sequence, double size, const AnalysisOptions& options);
 
-/// Decomposes a source, all frames of which are in memory meanwhile; but for a compatibility that
-/// decides otherwise, its parts count by part_weights(). Notes vertices that are welded at rest
-/// and part later, where fewer components are made than were asked for, and where what moves is a
-/// section of a part. Throws OptionError
-/// (Topic::component_count, Topic::support_range, Topic::no_vertex_inside) and what decompose()
-/// throws.
+/// Decomposes a source, with all its frames in memory. Connected parts are weighted by
+/// part_weights(), except with a compatibility.
+///
+/// Notes vertices that are welded at rest and part later, and a component count below the requested
+/// one. Notes if only a section of a part moves.
+///
+/// Throws OptionError (Topic::component_count, Topic::support_range, Topic::no_vertex_inside).
+/// Throws std::invalid_argument for options out of range, or a tolerance with a compatibility.
+/// Throws MismatchError if nothing moves inside, and what decompose() throws.
 Analysis analyse(const Source& source, const AnalysisOptions& options = {},
                  const Context& context = {});
 
 /// Components of an earlier run.
 struct GivenComponents {
-  /// In errors.
+  /// Name in errors.
   std::string name = "the components";
   Components components;
 };
 
-/// Throws MismatchError where they hold no weights, are of another mesh than the sequence, or all
-/// of them died.
+/// Throws MismatchError if the components have no weights, belong to another mesh than the
+/// sequence, or have all died.
 void check_components(const GivenComponents& given, const FrameSource& sequence);
 
-/// The same for components that are known already: of the options only the distances count, and
-/// where regions may lie, which moves the centres outside to the strongest vertices inside.
-/// `moving` are the vertices that move in the sequence. Throws as check_components().
+/// Returns the Analysis of given components. Of the options only `distances` and `inside` count;
+/// centres outside move to the strongest vertex inside. `moving` lists the vertices that move in
+/// the sequence. Throws as check_components() and distances_along() do, and OptionError
+/// (Topic::no_vertex_inside).
 Analysis analysis_of(const GivenComponents& given, const FrameSource& sequence,
                      const std::vector<VertexIndex>& moving, const AnalysisOptions& options = {},
                      const Context& context = {});

@@ -9,14 +9,14 @@ namespace mimetra {
 
 namespace {
 
-/// So many frames tell which motion predicts better; the work does not grow beyond.
+/// This many frames show which motion predicts better; the work does not grow with longer clips.
 constexpr int kJudgedFrames = 50;
-/// Larger patches than these leave too little of a face, smaller ones are told by what is around
-/// them.
+/// Larger patches would leave too little of a face. Smaller patches would be determined by their
+/// surroundings.
 constexpr int kPatches = 8;
 
-/// The number of the patch that each vertex is in: of centres that lie as far from each other as
-/// can be, the nearest.
+/// Number of the patch of each vertex: the nearest of kPatches centres that are far from each
+/// other.
 std::vector<int> patches_of(const Positions& rest) {
   std::vector<int> patch(rest.rows(), 0);
   const Eigen::RowVector3d middle = rest.colwise().mean();
@@ -37,7 +37,7 @@ std::vector<int> patches_of(const Positions& rest) {
   return patch;
 }
 
-/// A part of the vertices, in memory, without triangles.
+/// Some vertices of a sequence, in memory, without triangles.
 MeshSequence part_of_vertices(const MeshSequence& sequence,
                               const std::vector<Eigen::Index>& vertices) {
   Connectivity points;
@@ -50,7 +50,7 @@ MeshSequence part_of_vertices(const MeshSequence& sequence,
   return {points, std::move(frames), sequence.known_times(), sequence.rest()(vertices, Eigen::all)};
 }
 
-/// Sum over frames and vertices of squared distances to what is predicted.
+/// Sum over frames and vertices of squared distances to the prediction.
 double squared_error(const MeshSequence& sequence, const BlendshapeModel& target,
                      const HeadAndExpressions& found, const std::vector<Eigen::Index>& vertices) {
   const Positions rest = sequence.rest()(vertices, Eigen::all);
@@ -75,7 +75,7 @@ std::vector<int> triangles_outside(const Triangles& triangles, const std::vector
   return outside;
 }
 
-/// A source at the vertices of a target, where its motion is known; the others stay.
+/// Carries a source to the vertices of a target. Vertices without carriers stay at the neutral.
 MeshSequence on_target(const MeshSequence& sequence, const BlendshapeModel& target,
                        const Pairing& pairing) {
   const std::vector<VertexIndex> carried = pairing.carried_vertices();
@@ -93,7 +93,7 @@ MeshSequence on_target(const MeshSequence& sequence, const BlendshapeModel& targ
           placed(PositionsView(sequence.rest().data(), sequence.vertices(), 3))};
 }
 
-/// Both errors as a share of the diameter; none where there is no patch to hold out.
+/// Errors of both motions as a share of the diameter; empty if there is no patch to hold out.
 std::optional<HeldOutErrors> held_out_errors(const std::shared_ptr<const FrameSource>& placed,
                                              const Target& matched, EdgeSum edges,
                                              const Context& context) {

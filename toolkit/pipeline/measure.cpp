@@ -62,15 +62,15 @@ std::string unusable_by(const TransferError& error) {
 
 namespace {
 
-/// Mean over frames and the selected triangles of the squared error.
+/// Mean of `per_triangle` over the selected triangles.
 double mean_over(const Eigen::VectorXd& per_triangle, const std::vector<int>& selected) {
   double sum = 0;
   for (const int triangle : selected) sum += per_triangle[triangle];
   return sum / static_cast<double>(selected.size());
 }
 
-/// MPE; none where the full transfer of a mesh of this size is exact up to rounding, be it that of
-/// files in single precision.
+/// MPE; empty if the full transfer of a mesh of this size is exact up to the rounding of single
+/// precision files.
 std::optional<double> percentage_error(double full, double k, double size) {
   constexpr double kRounding = 1e-7;
   if (full <= kRounding * size * kRounding * size) return {};
@@ -92,10 +92,10 @@ EvaluatedTransfer solved(const Source& source, const Target& target, const Selec
   return result;
 }
 
-/// The work of one decomposition in a row; the rest is its transfer.
+/// Share of the decomposition in the work of a row; the transfer takes the rest.
 constexpr double kAnalysisShare = 0.9;
 
-/// Of all regions of the source; none where they differ.
+/// Radius of all regions of the source, without added discs; empty if the radii differ.
 std::optional<double> common_radius(const Regions& regions) {
   std::optional<double> radius;
   for (const Region& region : regions.regions) {
@@ -140,7 +140,7 @@ EvaluatedTransfer evaluate_by(const Regions& regions, const EvaluatedTransfer& f
 
 namespace {
 
-/// Shares of the triangles that a curve is measured at.
+/// Shares of the triangles along a curve.
 constexpr std::array kCurveShares = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8};
 
 /// Makes the rows of one evaluation, one after the other.
@@ -161,14 +161,14 @@ class Rows {
     }
     check_rules(target_, options_.solve);
     check_border(options.given ? &*options.given : nullptr, target_, options_.solve);
-    // Nothing that is returned keeps it.
+    // The source keeps no ownership of `sequence`; nothing that is returned refers to it.
     source_ = prepare_source(
         std::shared_ptr<const FrameSource>(std::shared_ptr<const FrameSource>(), &sequence),
         options_.source, joint_search({target_}, options_.solve), context.part(0, 0));
     full_ = evaluate_full(source_, target_, options_.solve, next_part(0, 1));
   }
 
-  /// A row of regions that are known already, completed for the target.
+  /// Adds a row of given regions, completed for the target.
   void add_given(const GivenRegions& given) {
     check_regions(given, *source_.sequence);
     RegionCompleter completion(source_, options_.regions, options_.analysis);
@@ -176,7 +176,7 @@ class Rows {
     add(evaluate_by(regions, full_, source_, target_, options_.solve, next_part(0, 1)));
   }
 
-  /// A row of the strongest regions of k components.
+  /// Adds a row of the strongest regions of k components.
   void add_energy(int k) {
     const Stopwatch stopwatch;
     const Analysis analysis = analysis_of(k);
@@ -186,7 +186,7 @@ class Rows {
     add(regions, analysis, analysis.components.count(), stopwatch.seconds());
   }
 
-  /// A row of regions that are chosen for the transfer.
+  /// Adds a row of regions that are chosen for the transfer.
   void add_transfer(const SelectionBound& bound) {
     const Stopwatch stopwatch;
     if (!selector_) selector_.emplace(source_, options_.regions, options_.analysis);
@@ -204,8 +204,8 @@ class Rows {
     add(result);
   }
 
-  /// A row for each share of a curve by the strongest regions, of one decomposition; none where
-  /// there are no regions for it, or only those of the row before.
+  /// Adds a row for each share of the curve by the strongest regions, all from one decomposition.
+  /// Skips shares that are too small for a region, and shares that add no triangles.
   void add_energy_curve() {
     const Stopwatch stopwatch;
     const Analysis analysis = analysis_of(EvaluationOptions::kCurveComponents);
@@ -225,7 +225,7 @@ class Rows {
     }
   }
 
-  /// The same by regions that are chosen for the transfer.
+  /// Adds the rows of the curve by regions that are chosen for the transfer.
   void add_transfer_curve() {
     for (const double share : kCurveShares) add_transfer({share, {}});
   }
@@ -247,14 +247,14 @@ class Rows {
     return std::max(1.0, static_cast<double>(options.counts.size()));
   }
 
-  /// Of the row that is made.
+  /// Part of the progress that belongs to the current row.
   Context next_part(double from, double to) const {
     const double done = full_.solution.sequence ? static_cast<double>(rows_.size()) + 1 : 0;
     return context_.part(std::min(1.0, (done + from) / steps_),
                          std::min(1.0, (done + to) / steps_));
   }
 
-  /// Keeps what is wrong with a result that people would not use.
+  /// Remembers results that are probably unusable.
   void judge(const EvaluatedTransfer& result) {
     std::string wrong = unusable_by(result.error);
     if (result.error.crease >= kVisibleCrease) {
@@ -268,7 +268,7 @@ class Rows {
                         ": " + wrong);
   }
 
-  /// \pre what the row tells beside the transfer is known
+  /// \pre `result.row` is complete
   void add(const EvaluatedTransfer& result) {
     judge(result);
     rows_.push_back(result.row);
@@ -342,12 +342,12 @@ namespace {
 
 constexpr double kNumber = sizeof(double);
 
-/// A transfer's constant vectors, and for each thread sixteen frames: read, gathered, their sums,
-/// what the sums are solved for, and the result.
+/// A transfer's constant vectors, and sixteen frames per thread. Each frame is stored as read,
+/// gathered, summed, as the right-hand side, and solved.
 constexpr double kPullPerTriangle = 72;
 constexpr double kLanesPerVertex = 5 * 3 * 16 * kNumber;
 
-/// What a FrameStore has in memory: more frames are in its file.
+/// Bytes that a FrameStore keeps in memory; it writes larger sequences to a file.
 double kept_bytes(double all) {
   return all > static_cast<double>(FrameStore::kMemoryBytes) ? 0 : all;
 }
@@ -385,7 +385,7 @@ double selection_bytes(const FrameSource& sequence, const BlendshapeModel& targe
   const double frames = std::min(sequence.frames(), RegionSelector::kMostFrames);
   const auto triangles = static_cast<double>(target.triangles().rows());
   const auto expressions = static_cast<double>(target.expressions().size());
-  // The frames, what each triangle lacks in them, and what each disc shows.
+  // The frames, the part of each triangle's motion that is missing, and the data of each disc.
   return kNumber * (frames * (3.0 * sequence.vertices() + 6 * triangles) +
                     RegionSelector::kCandidates * expressions * (expressions + frames)) +
          kFactorsPerVertex * sequence.vertices();
@@ -396,13 +396,13 @@ double solution_bytes(const FrameSource& sequence, const BlendshapeModel& target
   const auto expressions = static_cast<double>(target.expressions().size());
   const double vertices = target.vertices(),
                triangles = static_cast<double>(target.triangles().rows());
-  // The displacement fields at the vertices that are looked at, those of the result, and its
-  // weights; or factors, and the poses of a short result.
+  // Weights: the displacement fields at the used vertices, the result's fields, and the weights.
+  // Vertices: the factors, and the poses of a short result.
   const double poses = kNumber * 3 * vertices * sequence.frames();
   const bool has_vertices = solves_for_vertices(target, options.space);
   double space = has_vertices ? kFactorsPerVertex * vertices + kept_bytes(poses)
                               : kNumber * expressions * (6 * vertices + 2 * sequence.frames());
-  // What is smoothed over time is there as a whole: poses, or a banded system of all weights.
+  // Smoothing over time needs all poses, or a banded system of all weights.
   if (options.smoothness > 0) {
     space += has_vertices ? poses : kNumber * 4 * sequence.frames() * expressions * expressions;
   }
@@ -415,8 +415,8 @@ double regional_bytes(const FrameSource& sequence, const BlendshapeModel& target
   const auto expressions = static_cast<double>(target.expressions().size());
   const double unknowns = (regions + 1) * expressions;
   const double threads = context.thread_count();
-  // The Gram matrix, the system and for each thread its factor; each thread's fields of a region,
-  // gathered and shared out; the shares, twice, and the weights.
+  // The Gram matrix, the system, and a factor per thread. Each thread's fields of a region,
+  // gathered and shared out. The shares, twice, and the weights.
   return kNumber *
          ((2 + 2 * threads) * unknowns * unknowns + threads * 6 * expressions * target.vertices() +
           2.0 * (regions + 1) * target.vertices() + 2 * unknowns * sequence.frames());

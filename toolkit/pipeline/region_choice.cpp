@@ -23,8 +23,7 @@ namespace mimetra {
 
 namespace {
 
-/// Vertices where no region is made: those near rims, unless no component moves another vertex
-/// most.
+/// Vertices near rims, where no region is made. Empty if every component moves a rim most.
 std::vector<bool> rims_to_avoid(const Analysis& analysis, const RegionChoiceOptions& options,
                                 const Context& context) {
   if (!options.drop_rims) return {};
@@ -46,11 +45,11 @@ std::vector<bool> rims_to_avoid(const Analysis& analysis, const RegionChoiceOpti
   return near;
 }
 
-/// Connected parts of a smaller share of the surface are hardly what a face's regions are meant
-/// for: single teeth, lashes.
+/// Share of the surface below which a connected part is small, such as a single tooth or lashes.
+/// Regions of a face are hardly meant for such parts.
 constexpr double kSmallPart = 0.02;
 
-/// Notes regions on parts of less than kSmallPart of the surface, also in the regions' own notes.
+/// Notes regions on small parts, also in the regions' own notes.
 void note_small_parts(Regions& regions, const Context& context) {
   int count = 0;
   std::set<int> parts;
@@ -69,8 +68,9 @@ void note_small_parts(Regions& regions, const Context& context) {
   context.note(regions.notes.back(), Topic::small_parts);
 }
 
-/// Notes discs of a radius that was not given as a length that hold more than half of a mesh of
-/// this size (Topic::large_regions): they tell nothing apart.
+/// Notes discs with more than half of the vertices (Topic::large_regions), which distinguish
+/// nothing. Radii that are absolute lengths are not checked. `size` is the diameter of relative
+/// radii.
 void note_large_regions(const Regions& regions, const RegionChoiceOptions& options, double size,
                         const Triangles& triangles, const Context& context) {
   constexpr double kMost = 0.5;
@@ -87,7 +87,7 @@ void note_large_regions(const Regions& regions, const RegionChoiceOptions& optio
                Topic::large_regions);
 }
 
-/// Says why no region fits into a share of the triangles.
+/// Explains why no region fits into a share of the triangles.
 [[noreturn]] void refuse_bound(double share, const std::string& reason) {
   throw OptionError(Topic::triangle_bound, percent(share) + " of the triangles: " + reason +
                                                "; allow more, or take "
@@ -132,10 +132,10 @@ bool has_own_regions(const RegionChoiceOptions& options) {
 
 namespace {
 
-/// Of all the work, choosing the vertices, and until the motion of all is added up.
+/// Progress at which the simplification ends, and at which the analysis ends.
 constexpr double kSimplifying = 0.3, kAnalysed = 0.9;
 
-/// What is said of the vertices of the mesh, of those that are kept.
+/// Restricts the options to the kept vertices.
 AnalysisOptions of_kept(AnalysisOptions options, const std::vector<VertexIndex>& kept) {
   if (!options.inside.empty()) {
     std::vector<bool> inside;
@@ -175,7 +175,7 @@ SimplifiedRegions regions_by_simplified(const Source& source, const SimplifyOpti
   RegionChoiceOptions of_choice = choice;
   const double size = moving_parts(source.moving, whole.rest(), whole.triangles()).diameter;
   of_choice.radius = Length::of(choice.radius.in(size));
-  of_choice.coverage.reset();  // of the energy on all vertices
+  of_choice.coverage.reset();  // needs the energy on all vertices
   const Analysis of_few =
       analyse(on_kept, of_kept(analysis, kept), context.part(kSimplifying, kAnalysed));
   const Regions found = choose_regions(of_few, of_choice, context);
@@ -215,10 +215,10 @@ void check_regions(const GivenRegions& given, const FrameSource& sequence) {
 
 namespace {
 
-/// Radius of added discs, as a share of that of the regions.
+/// Radius of added discs, as a share of the regions' radius.
 constexpr double kAddedRadius = 0.5;
 
-/// What each disc was added for, once.
+/// Names of the expressions that discs were added for, each once.
 std::vector<std::string> reasons(const CompletedRegions& completed) {
   std::vector<std::string> names;
   for (const Region& region : std::span(completed.regions.regions).last(completed.added)) {
@@ -269,7 +269,7 @@ CompletedRegions RegionCompleter::completed_within(double bound, const Regions& 
   what_fits.limit = std::max(0.0, bound - strongest(regions, 1, triangles_).triangle_share());
   CompletedRegions made = with(1, what_fits);
   if (fits(made)) return made;
-  // Discs that are counted on the target may hold more of the source.
+  // The limit counts triangles of the target, so the discs may exceed it on the source.
   what_fits.share = 0;
   made = with(1, what_fits);
   made.limited = true;
@@ -339,15 +339,15 @@ void check_selection(const Target& target, const RegionChoiceOptions& regions, S
 
 namespace {
 
-/// Solving for the weights by all triangles, as a part of the work.
+/// Share of the progress for the solve by all triangles.
 constexpr double kFullShare = 0.2;
 
-/// Of RegionSelectionOptions, for regions that serve other identities too: chosen on one at a fifth
-/// of the triangles, five others lose 0.4 to 1.2 % with 30, 0.4 to 1.9 % with 10, 0.3 to 2.2 % with
-/// 100.
+/// RegionSelectionOptions::noise for regions that also serve other identities. Measured with
+/// regions chosen on one identity at a fifth of the triangles. Five others lose 0.4 to 1.2 % with
+/// 30, 0.4 to 1.9 % with 10, and 0.3 to 2.2 % with 100.
 constexpr double kNoise = 30;
 
-/// A share that is missed by more than this is worth a note: less than one disc as a rule.
+/// Shortage of triangles that is worth a note; one disc usually has more.
 constexpr double kMissedTriangles = 0.02;
 
 Region region_of(const Disc& disc, double radius) {
@@ -426,7 +426,7 @@ std::vector<Regions> RegionSelector::within(std::span<const SelectionBound> boun
 
 namespace {
 
-/// Of a target vertex with carriers. Where they agree it is theirs, bit by bit.
+/// Weight of a target vertex from its carriers. Equal weights stay the same bits.
 double weight_between(std::span<const Pairing::Carrier> carriers, const Eigen::VectorXd& weights) {
   const double first = weights[carriers.front().vertex];
   double weight = first;
@@ -434,7 +434,7 @@ double weight_between(std::span<const Pairing::Carrier> carriers, const Eigen::V
   return std::clamp(weight, 0.0, 1.0);
 }
 
-/// Places that triangles connect.
+/// Places that share an edge with each place.
 std::vector<std::vector<VertexIndex>> neighbors_of(const Triangles& triangles, Eigen::Index count) {
   std::vector<std::vector<VertexIndex>> neighbors(count);
   for (const auto& corners : triangles.rowwise()) {
@@ -452,8 +452,8 @@ std::vector<std::vector<VertexIndex>> neighbors_of(const Triangles& triangles, E
   return neighbors;
 }
 
-/// The number of each unknown place that is connected with a known one, in the order in which they
-/// are reached; -1 for others.
+/// Numbers the unknown places that are connected with a known place, in the order of a
+/// breadth-first search; -1 for others.
 std::vector<int> reached_places(const std::vector<std::vector<VertexIndex>>& neighbors,
                                 const std::vector<bool>& known) {
   std::vector<int> number(neighbors.size(), -1);
@@ -473,7 +473,7 @@ std::vector<int> reached_places(const std::vector<std::vector<VertexIndex>>& nei
   return number;
 }
 
-/// Gives the unknown places the mean of their neighbours, all at once.
+/// Gives each unknown place the mean of its neighbours, by one linear system.
 void fill_gaps(Eigen::VectorXd& of_places, const std::vector<bool>& known,
                const Triangles& triangles) {
   const auto neighbors = neighbors_of(triangles, of_places.size());
@@ -501,7 +501,7 @@ void fill_gaps(Eigen::VectorXd& of_places, const std::vector<bool>& known,
     throw std::runtime_error("the weights of vertices without partner cannot be solved for");
   }
   const Eigen::VectorXd solved = factor.solve(from_known);
-  // Where only 0, or only 1, is around, rounding of long ways through a gap must not make it less.
+  // Between equal weights of 0 or 1, rounding across a large gap must not change the weight.
   constexpr double kRounding = 1e-9;
   for (std::size_t place = 0; place < number.size(); ++place) {
     if (number[place] < 0) continue;
@@ -512,7 +512,7 @@ void fill_gaps(Eigen::VectorXd& of_places, const std::vector<bool>& known,
   }
 }
 
-/// Throws where there is nothing around which something could fade out.
+/// Throws OptionError (Topic::no_full_weight) if no vertex has the weight 1.
 void check_full_weight(const std::string& name, const Eigen::VectorXd& weights) {
   if ((weights.array() == 1).any()) return;
   throw OptionError(Topic::no_full_weight,
@@ -522,7 +522,7 @@ void check_full_weight(const std::string& name, const Eigen::VectorXd& weights) 
                         readable(weights.maxCoeff()));
 }
 
-/// What the falloff on a target is a share of.
+/// Size that a relative falloff on a target is a share of.
 double size_of_border(const Target& target, const Eigen::VectorXd& weights,
                       const std::vector<VertexIndex>& moving) {
   const BlendshapeModel& model = target.model;

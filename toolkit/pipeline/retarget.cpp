@@ -7,7 +7,7 @@
 namespace mimetra {
 namespace {
 
-/// The model where the target stands.
+/// Carries a model to the target's place.
 BlendshapeModel carried_model(const BlendshapeModel& model, const Similarity& similarity) {
   if (similarity.is_identity()) return model;
   ShapeBasis shapes = model.expressions();
@@ -33,7 +33,7 @@ Retargeting map_between(const Animation& source, const Target& target,
     return linear_transfer(there, target.model, all_triangles(target.model.get().triangles()),
                            of_map, context);
   }
-  // Polygons may be cut along other diagonals than the source's.
+  // The matched target's polygons are cut along the source's diagonals.
   const MatchedTarget matched(source, target);
   const BlendshapeModel& model = (*matched).model;
   return linear_transfer(there, model, all_triangles(model.triangles()), of_map, context);

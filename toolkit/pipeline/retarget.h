@@ -9,16 +9,16 @@
 namespace mimetra {
 
 struct RetargetOptions {
-  /// Of the source, in notes and errors.
+  /// Name of the source in notes and errors.
   std::string source_name = "the source";
-  /// As in SolveOptions.
+  /// See SolveOptions.
   Axes axes = Axes::fit;
   double smoothness = 0;
   double ridge = 0;
   double sparsity = 0;
   double symmetry = 0;
   Exclusive exclusive = Exclusive::none;
-  /// Also find the map that later clips can do with.
+  /// Also compute the linear map, which later clips can use.
   bool keep_map = false;
 
   static constexpr Option kAxes{"axes", &RetargetOptions::axes};
@@ -37,21 +37,22 @@ struct RetargetOptions {
   }
 };
 
-/// Weights of another rig, and how they came about.
+/// Weights of another rig.
 struct RetargetResult {
-  /// Its solution's weights are those of the target (F x D_t).
+  /// The solution's weights are the target's (F x D_t).
   TransferredTarget transferred;
-  /// Linear at the source's neutral, where it is to be kept.
+  /// Linear map at the source's neutral, if options.keep_map.
   std::optional<Retargeting> map = {};
 };
 
-/// Throws MismatchError where one of the models has no expressions.
+/// Throws MismatchError if one of the models has no expressions.
 void check_rigs(const Animation& source, const Target& target, const std::string& source_name);
 
-/// Weights of one rig become weights of another through their meshes: transfer() over all triangles
-/// from the source's poses to the target's expressions, paired where faces differ.
+/// Converts weights of one rig to weights of another through their meshes. Runs transfer() over all
+/// triangles, from the source's poses to the target's expressions. Targets with other faces are
+/// paired.
 ///
-/// The map's weights are retargeted() from the source's (F x D_s). Throws what check_rigs() and
+/// retargeted() applies the map to the source's weights (F x D_s). Throws what check_rigs() and
 /// transfer() throw. Notes what transfer() notes.
 RetargetResult retarget(const Animation& source, const Target& target,
                         const RetargetOptions& options = {}, const Context& context = {});

@@ -16,14 +16,14 @@ namespace mimetra {
 
 namespace {
 
-/// A vertex of the source that moves by less, as a share of the farthest that its expression moves
-/// one, stays: modelled expressions fade out far beyond what is seen.
+/// Vertices that move less than this share of their expression's largest move count as still.
+/// Modelled expressions fade out far beyond the visible motion.
 constexpr double kStill = 1e-4;
 
-/// Transfer and examples as progress shows them.
+/// Share of the transfer in the progress; the examples take the rest.
 constexpr double kTransferPart = 0.5;
 
-/// What an expression moves on the source: vertices, and triangles with one of them.
+/// Vertices that an expression moves on the source, and the triangles with such a vertex.
 Regions moving_part(const Positions& rest, const PositionsView& pose, const Triangles& triangles) {
   const Eigen::VectorXd distances = (pose - rest).rowwise().norm();
   const double least = kStill * distances.maxCoeff();
@@ -59,9 +59,9 @@ class ExpressionTransfer {
   }
 
   const Eigen::MatrixXd& displacements() const { return displacements_; }
-  /// Of the target, at most of any expression.
+  /// Largest number of slivers of the target in any expression.
   int slivers() const { return slivers_; }
-  /// Parts that follow, with how far any expression moves each.
+  /// Parts that follow, with their largest moves in any expression.
   std::vector<FollowingPart> following() const {
     if (!options_.following) return {};
     const BlendshapeModel& model = target_.model;
@@ -72,7 +72,7 @@ class ExpressionTransfer {
   }
 
  private:
-  /// Returns the slivers of the target.
+  /// Returns the number of slivers of the target.
   int transfer(int j, const Context& context) {
     const Frames frame = source_.read(j, 1);
     const PositionsView pose(frame.data(), source_.rest().rows(), 3);
@@ -98,8 +98,8 @@ class ExpressionTransfer {
   int slivers_ = 0;
 };
 
-/// The target's own expressions that the source has, by the same name or one written otherwise, are
-/// examples, too, unless one is given.
+/// Adds the target's own expressions as examples if the source has them, under the same name or
+/// another spelling. Given examples have priority.
 void add_own_expressions(std::vector<RigExample>& examples, const BlendshapeModel& target,
                          const ShapeBasis& expressions, const Context& context) {
   std::vector<std::string> renamed;
@@ -127,7 +127,7 @@ void add_own_expressions(std::vector<RigExample>& examples, const BlendshapeMode
                listed(renamed));
 }
 
-/// Notes examples no vertex of which stays where it is in the neutral.
+/// Notes examples in which every vertex is far from the neutral.
 void note_places(const std::vector<RigExample>& examples, const BlendshapeModel& model,
                  const Context& context) {
   const double size = diameter(model.neutral(), model.triangles());
@@ -140,7 +140,7 @@ void note_places(const std::vector<RigExample>& examples, const BlendshapeModel&
   }
 }
 
-/// Notes examples that are the neutral.
+/// Notes examples that equal the neutral.
 void note_still(const std::vector<RigExample>& examples, const Positions& neutral,
                 const Context& context) {
   std::vector<std::string> still;
@@ -152,7 +152,7 @@ void note_still(const std::vector<RigExample>& examples, const Positions& neutra
                "; a true shape that does not move makes its expression do nothing");
 }
 
-/// The expressions of the source on the target, then the target's others.
+/// Returns the source's expressions on the target, followed by the target's others.
 BlendshapeModel with_others(const BlendshapeModel& target, ShapeBasis expressions) {
   const ShapeBasis& own = target.expressions();
   const std::vector<std::string> known = expressions.names;
@@ -170,7 +170,7 @@ double largest_of(const Eigen::VectorXd& field) {
   return Eigen::Map<const Positions>(field.data(), field.size() / 3, 3).rowwise().norm().maxCoeff();
 }
 
-/// What became of each expression of the model.
+/// Reports on each expression of the model.
 std::vector<RiggedExpression> described(const BlendshapeModel& model,
                                         const Eigen::MatrixXd& transferred,
                                         const std::vector<RigExample>& examples) {
@@ -195,7 +195,7 @@ std::vector<RiggedExpression> described(const BlendshapeModel& model,
   return list;
 }
 
-/// One expression of a model as a sequence.
+/// Returns one expression of a model as a sequence.
 MeshSequence single_frame(const BlendshapeModel& model, int expression) {
   const Eigen::RowVectorXd weights = Eigen::VectorXd::Unit(model.expressions().size(), expression);
   return model.animate(weights);
@@ -213,7 +213,7 @@ void count_flipped(Rig& rig, const FrameSource& source, const Target& target,
   parallel_for(source.frames(), count, context);
 }
 
-/// The share of the deformation that the transferred expressions lack.
+/// Share of the deformation that the transferred expressions lack.
 double missed_by(const BlendshapeModel& transferred, const FrameSource& source,
                  const Target& target, const Context& context) {
   const Eigen::MatrixXd each = Eigen::MatrixXd::Identity(source.frames(), source.frames());
@@ -315,7 +315,7 @@ Rig rig(const BlendshapeModel& source, const Target& given, std::vector<RigExamp
 }
 
 double rig_bytes(const BlendshapeModel& source, const BlendshapeModel& target) {
-  // The transferred expressions, the corrected ones, the model's, and gradients of six numbers a
+  // The transferred expressions, the corrected ones, the model's, and gradients of six numbers per
   // triangle.
   const auto expressions = static_cast<double>(source.expressions().size());
   return sizeof(double) * expressions *

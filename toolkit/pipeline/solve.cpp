@@ -19,7 +19,7 @@ namespace mimetra {
 
 namespace {
 
-/// Throws std::invalid_argument where such weights cannot be found as the options say.
+/// Throws std::invalid_argument if the options do not allow weights of each region.
 void check_regional(const Target& target, const SolveOptions& options) {
   if (solves_for_vertices(target.model, options.space)) {
     throw std::invalid_argument("per_region: " + target.name +
@@ -128,7 +128,7 @@ Selection selection_of(const Regions& regions, const Target& target) {
   Selection selection{
       pairing.with_gaps(triangles_over(pairing.triangles(), regions.triangles), triangles),
       pairing.over(regions.inside), regions_over(pairing, regions)};
-  // Vertices without carriers are inside where all of their triangles are in L.
+  // Vertices without carriers are inside if all of their triangles are in L.
   std::vector<bool> in_l(triangles.rows(), false), leaves(pairing.target_vertices(), false);
   for (const int t : selection.triangles) in_l[t] = true;
   std::vector<bool> is_used(pairing.target_vertices(), false);
@@ -274,19 +274,19 @@ Weld closed_seams_of(const Source& source, const Target& target, const Context& 
 
 namespace {
 
-/// Looking for seams, which reads every frame, as a part of a solve's progress; and until poses are
-/// solved for that are smoothed afterwards.
+/// Progress at which the search for seams ends (it reads every frame), and at which the solve ends
+/// if smoothing follows.
 constexpr double kSeamShare = 0.2;
 constexpr double kUnsmoothedShare = 0.9;
 
-/// The weights of the whole face, as a part of those of each region.
+/// Share of the solve for the whole face, before the weights of each region.
 constexpr double kGlobalShare = 0.2;
 
 EdgeSum edges_of(const SolveOptions& options) {
   return options.edges.value_or(EdgeSum::all);
 }
 
-/// How much each region counts at the target's vertices.
+/// Share of each region at the target's vertices.
 RegionShares shares_on(const BlendshapeModel& model,
                        const std::vector<std::vector<VertexIndex>>& regions,
                        const SolveOptions& options, const Context& context) {
@@ -319,8 +319,8 @@ void note_empty_regions(const std::vector<std::vector<VertexIndex>>& regions,
                "whole face");
 }
 
-/// Solves for the weights of the selection's regions and of what lies around them, on all
-/// triangles, given those of the whole face (F x D).
+/// Solves for the weights of the selection's regions and of the surface around them, on all
+/// triangles. `global` are the weights of the whole face (F x D).
 Solution solve_regions(const FrameSource& performance, const Target& target,
                        const Selection& selection, const Eigen::MatrixXd& global,
                        const SolveOptions& options, const Context& context) {
@@ -381,8 +381,8 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
   notes.add_degenerate({.source = solution.degenerate_source_triangles,
                         .target = solution.degenerate_target_triangles,
                         .collapsed = solution.collapsed_triangles});
-  // Another face's expressions are never quite the source's: with an exact neutral, too, some want
-  // to be negative.
+  // Expressions of another face never match the source's exactly. Some want to be negative even
+  // with an exact neutral, so a known neutral is not doubted.
   const bool may_be_wrong = !source.neutral_is_known;
   if (may_be_wrong && transfer.rest_looks_unneutral(performance, beta, context.part(1, 1))) {
     notes.add(
@@ -422,7 +422,7 @@ void check_anchor(const SolveOptions& options, const Target& target, const Selec
   }
 }
 
-/// Throws for weights of a selection that are none, or that other options contradict.
+/// Throws for weights of a selection that are invalid, or that other options contradict.
 void check_weights_of(const Selection& selection, const Target& target,
                       const SolveOptions& options) {
   if (selection.weights.size() == 0) return;
@@ -434,7 +434,7 @@ void check_weights_of(const Selection& selection, const Target& target,
   check_soft_border(target, options);
 }
 
-/// Hands poses on and keeps how far each part that follows moves.
+/// Passes poses on and records how far each part that follows moves.
 class WatchedSink : public FrameSink {
  public:
   WatchedSink(FrameSink& sink, const FollowingParts& following)

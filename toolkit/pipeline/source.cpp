@@ -49,7 +49,7 @@ bool takes_out(const Motion& motion) {
   return !fitted || *fitted != HeadMotion::none;
 }
 
-/// A joint motion that nobody asked for must predict held-out vertices this many times as well as
+/// A joint motion that was not asked for must predict held-out vertices this many times as well as
 /// the stable one. On faces that move everywhere it is 4 to 9 times as good, on heads with still
 /// vertices 0.9 to 1.1 times.
 constexpr double kJointGain = 2;
@@ -118,7 +118,7 @@ Shared with_asked_rest(Shared sequence, const SourceOptions& options, const Cont
     case SourceRest::mean:
       break;
   }
-  return sequence;  // the mean is that of the aligned frames
+  return sequence;  // prepare_source() sets the mean, after alignment
 }
 
 /// Throws MismatchError for a rest pose in another unit than the frames, which would hide all
@@ -156,14 +156,14 @@ std::string in_percent(double share) {
   return readable(100 * share, 2) + " %";
 }
 
-/// Both errors on held-out vertices, for a note.
+/// Describes both errors on held-out vertices, for a note.
 std::string comparison(const HeldOutErrors& errors) {
   return "vertices that were held out of the fit are predicted to " + in_percent(errors.joint) +
          " of the size together with the target's expressions, to " + in_percent(errors.stable) +
          " by the stillest vertices";
 }
 
-/// Notes that no vertex is still enough to tell the motion, and what was done about it.
+/// Notes that no vertex is still enough to determine the motion, and which motion is used.
 void note_uncertainty(const MotionChoice& choice, const Source& source,
                       const SourceOptions& options, const Context& context) {
   const HeadMotionTaken& motion = source.head_motion;
@@ -216,8 +216,8 @@ bool note_given_motion(const Source& source, const SourceOptions& options, const
   return true;
 }
 
-/// Notes a motion that was taken out, or left in, without being asked for. Returns whether frames
-/// are elsewhere than the rest pose.
+/// Notes a motion that was taken out, or left in, without being asked for. Returns whether the
+/// frames still differ from the rest pose as a whole.
 bool note_motion(const MotionChoice& choice, const Source& source, const SourceOptions& options,
                  const Context& context) {
   if (std::holds_alternative<std::vector<RigidTransform>>(choice.motion)) {
@@ -233,8 +233,8 @@ bool note_motion(const MotionChoice& choice, const Source& source, const SourceO
   return false;
 }
 
-/// Notes a neutral that is likely another face's: the difference between two faces would count as
-/// deformation.
+/// Notes a neutral that probably belongs to another face. The difference between the faces would
+/// count as deformation.
 void note_other_face(const Source& source, const SourceOptions& options, const Context& context) {
   const RestBeyondFrames rest = rest_beyond_frames(source.sequence, context);
   if (rest.is_of_other_face()) {
@@ -242,7 +242,8 @@ void note_other_face(const Source& source, const SourceOptions& options, const C
   }
 }
 
-/// Notes frames that cannot be poses of the mesh: regions form around them, and targets follow.
+/// Notes frames that cannot be poses of the mesh. Regions would form around them, and targets would
+/// follow.
 void note_odd_frames(const FrameSource& sequence, const SourceOptions& options,
                      const Context& context) {
   const std::vector<FrameShape> shapes = frame_shapes(sequence, context);
@@ -279,7 +280,7 @@ Positions asked_rest(const FrameSource& sequence, const SourceOptions& options) 
 
 Source prepare_source(Shared sequence, const SourceOptions& options, const JointSearch& joint,
                       const Context& context) {
-  // The given sequence, not the one with the asked rest pose, decides whether the head moves.
+  // The given sequence, not the one with the requested rest pose, decides whether the head moves.
   const MotionChoice choice = motion_of(*sequence, options);
   const auto* asked = std::get_if<HeadMotion>(&choice.motion);
   if (asked && *asked == HeadMotion::joint && !joint) {

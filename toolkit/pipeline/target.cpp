@@ -24,7 +24,7 @@ TriMesh rest_mesh(const FrameSource& source) {
   return {source.rest(), source.connectivity()};
 }
 
-/// Root mean square distance of `to` (N x 3) from `from`, carried there without mirroring it.
+/// Root mean square distance between `from`, fitted without mirroring, and `to` (N x 3).
 double misfit(const Positions& from, const Positions& to) {
   const Similarity fit = similarity_fit(from, to, Handedness::kept);
   return (fit.apply(from) - to).norm() / std::sqrt(static_cast<double>(to.rows()));
@@ -35,8 +35,8 @@ double misfit(const Positions& from, const Positions& to) {
 bool has_faces_of(const TriMesh& source, const BlendshapeModel& target) {
   if (same_faces(source.connectivity, target.connectivity())) return true;
   if (!in_order_of(source.connectivity, target.connectivity())) return false;
-  // A mesh that looks the same from two sides has the same faces where it is numbered from the
-  // other one.
+  // A mesh that looks the same from two sides has the same faces when it is numbered from the other
+  // side.
   const Renumbering other = renumbering(source.connectivity, target.connectivity());
   if (!other.found() || other.moved() == 0) return true;
   return misfit(source.positions, target.neutral()) <
@@ -51,7 +51,7 @@ bool is_to_be_paired(const FrameSource& source, const Target& target) {
 
 namespace {
 
-/// By how much lower or higher vertices the markers would fit much better; 0 where they are right.
+/// Shift, 1 or -1, of vertex numbers that fit much better; 0 if the markers are right.
 int better_shift(const std::vector<Marker>& markers, const TriMesh& source, const TriMesh& target) {
   for (const int shift : {1, -1}) {
     if (fit_better_shifted(markers, shift, source.positions, target.positions)) return shift;
@@ -72,7 +72,7 @@ void check_given_markers(const std::vector<Marker>& markers, const std::vector<s
   const int shift = better_shift(markers, source, target);
   try {
     check_markers(markers, source.positions, target.positions);
-    // Throws where they fit a mirror image only.
+    // Throws if the markers fit only a mirror image.
     is_inside_out(source, target, markers);
   } catch (const MismatchError& error) {
     const std::string text = name + ": " + error.what();
@@ -101,7 +101,7 @@ void check_numbering(const FrameSource& source, const Target& target) {
                       "(convert --match)");
 }
 
-/// What is different about faces that are not the source's.
+/// Describes how faces differ from the source's.
 std::string described_faces(const Connectivity& source, const BlendshapeModel& model) {
   if (model.vertices() != source.vertices) {
     return std::to_string(model.vertices()) + " vertices, expected " +
@@ -111,7 +111,7 @@ std::string described_faces(const Connectivity& source, const BlendshapeModel& m
          " is not the source's";
 }
 
-/// Finds what markers tell. Errors are the target's.
+/// Finds the correspondence from markers. Errors start with the target's name.
 FoundCorrespondence found_by(const std::vector<Marker>& markers, const TriMesh& source,
                              const TriMesh& target, const std::string& name,
                              const Context& context) {
@@ -146,7 +146,7 @@ double paired_size(const Correspondence& pairs, const TriMesh& target) {
   return subject_box(target.positions, surface_parts(target.positions, triangles), paired).diagonal;
 }
 
-/// Says that it was needed, and what makes the markers doubtful.
+/// Searches for markers. Notes why they are needed, and warnings about them.
 AutomaticMarkers found_between(const MarkersBetween& search, const TriMesh& source,
                                const Target& target, const Context& context) {
   const std::string differs =
@@ -164,7 +164,7 @@ AutomaticMarkers found_between(const MarkersBetween& search, const TriMesh& sour
   }
 }
 
-/// Says where a face is open at rest as the other one is not, or has no opening at all.
+/// Notes openings that differ at rest, and openings that only one face has.
 void note_openings(const TriMesh& source, const TriMesh& target, const AutomaticMarkers& markers,
                    const std::string& name, const Context& context) {
   for (const OpeningAtRest& opening : openings_at_rest(source, target, markers)) {
@@ -262,12 +262,13 @@ void MatchedTarget::pair(const TriMesh& source, const Context& context) {
 
 namespace {
 
-/// Lids that touch are about 0.03 apart, by the distance of vertices on either; on two heads this
-/// differs by less than the second number.
+/// Touching lids have vertices about 0.03 of the width apart. Between two heads this differs by
+/// less than kStaysOpen.
 constexpr double kClosed = 0.06;
 constexpr double kStaysOpen = 0.06;
 
-/// Mouths at rest are closed; eyes of people are open by different shares of their width.
+/// Largest differences between faces at rest. Mouths are closed; people's eyes are open by
+/// different shares of their width.
 constexpr double kMouthsAtRest = 0.15, kEyesAtRest = 0.25;
 
 std::vector<FaceOpening> openings_of(const TriMesh& rest, const FaceLandmarks& face) {

@@ -18,22 +18,22 @@
 
 namespace mimetra {
 
-/// Looks for markers from the source's undeformed shape to a target. Throws MismatchError that
-/// names the mesh on which nothing is found.
+/// Searches for markers between the source's undeformed shape and a target. Throws MismatchError
+/// that names the mesh on which it finds nothing.
 using MarkersBetween = std::function<AutomaticMarkers(const TriMesh& source, const Context&)>;
 
-/// How a target of other faces than the source's is paired with it: not at all, by markers that are
-/// looked for if it has other faces, by markers, or as is known already.
+/// How a target with other faces is paired with the source: not at all, by a search for markers, by
+/// given markers, or by a known correspondence. The search runs only if the faces differ.
 using GivenMatch =
     std::variant<std::monostate, MarkersBetween, std::vector<Marker>, Correspondence>;
 
-/// The shape of a target. It refers to a model, which outlives it, and keeps a temporary one.
+/// The model of a target. Refers to an lvalue, which must outlive it; keeps a temporary.
 class TargetModel {
  public:
   TargetModel(const BlendshapeModel& model) : model_(std::shared_ptr<const void>(), &model) {}
   TargetModel(BlendshapeModel&& model)
       : model_(std::make_shared<const BlendshapeModel>(std::move(model))) {}
-  /// A mesh is a model without expressions.
+  /// Makes a model without expressions from a mesh.
   TargetModel(const TriMesh& mesh) : TargetModel(BlendshapeModel(mesh, {})) {}
 
   const BlendshapeModel& get() const { return *model_; }
@@ -43,67 +43,74 @@ class TargetModel {
   std::shared_ptr<const BlendshapeModel> model_;
 };
 
-/// Receives the deformation: a model or a mesh.
+/// Model or mesh that receives the deformation.
 struct Target {
-  /// In notes and errors.
+  /// Name in notes and errors.
   std::string name;
   TargetModel model;
   GivenMatch match = {};
-  /// Of the model's expressions, where they are solved for.
+  /// Rules of the model's expressions, for a solve for weights.
   WeightRules rules = {};
-  /// Where each of the markers was written, for notes: "m.txt, line 3". None for their numbers.
+  /// Place where each marker was written, for notes: "m.txt, line 3". If empty, notes give numbers.
   std::vector<std::string> marker_places = {};
-  /// With the source; null where both have the same faces. A MatchedTarget has it of `match`.
+  /// Pairing with the source; null if both have the same faces. A MatchedTarget sets it from
+  /// `match`.
   std::shared_ptr<const Pairing> pairing = {};
 };
 
-/// Whether both have the same polygons, in any order, wound either way and cut in one of them, as
-/// quads are into triangles. Where another numbering (renumbering()) fits the faces as well, as
-/// that from the other side of a symmetric mesh, the nearer shape decides, carried to the target's
-/// neutral.
+/// Whether both meshes have the same polygons. Order and winding may differ, and one mesh may cut
+/// the other's polygons, as quads into triangles.
+///
+/// If another numbering (renumbering()) matches the faces as well, as on a symmetric mesh, the
+/// nearer shape decides. The shapes are compared after a similarity fit to the target's neutral.
 bool has_faces_of(const TriMesh& source, const BlendshapeModel& target);
 
-/// Whether a MatchedTarget is paired: markers or pairs are given, or markers are looked for and the
-/// faces differ.
+/// Whether a MatchedTarget is paired. That is so for given markers or pairs, and for searched
+/// markers if the faces differ.
 bool is_to_be_paired(const FrameSource& source, const Target& target);
 
-/// Looks at markers before anything is fitted to them. Notes, under the target's name, markers that
-/// do not lie where the others say (doubtful_markers(), Topic::poor_match); `places` say where each
-/// was written, such as "m.txt, line 3", or are none. Throws OptionError (Topic::shifted_markers)
-/// where they fit much better as vertices one lower or higher; MismatchError, under the target's
-/// name, for what check_markers() refuses.
+/// Checks markers before anything is fitted to them. Notes, under the target's name, markers that
+/// do not fit the others (doubtful_markers(), Topic::poor_match). `places` gives the place of each
+/// marker in a file, such as "m.txt, line 3", or is empty.
+///
+/// Throws OptionError (Topic::shifted_markers) if the markers fit much better as vertices one lower
+/// or higher. Throws MismatchError, under the target's name, if check_markers() refuses them or
+/// they fit only a mirror image.
 void check_given_markers(const std::vector<Marker>& markers, const std::vector<std::string>& places,
                          const TriMesh& source, const TriMesh& target, const std::string& name,
                          const Context& context);
 
-/// How well a target is paired, and what that took.
+/// How well a target is paired, and the time that the pairing took.
 struct MatchReport {
   CorrespondenceQuality quality;
-  /// By how many markers; 0 for a correspondence that was given.
+  /// Number of markers; 0 for a given correspondence.
   int markers = 0;
-  /// These, where they were looked for.
+  /// The markers, if they were searched for.
   std::optional<AutomaticMarkers> found = {};
   double seconds = 0;
 };
 
-/// A target and how its faces are the source's: the same, where polygons that its file begins at
-/// another corner are cut along the source's diagonals, or paired.
+/// A target that fits the source's faces. Either its faces are the same, or the target is paired.
+/// Polygons that start at another corner are cut along the source's diagonals.
 class MatchedTarget {
  public:
   /// `source_rest` is the source's undeformed shape (N x 3), by default its rest pose.
   ///
-  /// Notes, under the target's name, markers that are doubtful and a match whose verdict is
-  /// poor (Topic::poor_match), and a target that is inside out. Throws OptionError
-  /// (Topic::other_faces) unless the target has the source's vertices and faces or a match is
-  /// given, and (Topic::shifted_markers) for markers that fit much better as other vertices;
-  /// MismatchError for other wrong markers and those that fit a mirror image, a correspondence of
-  /// other numbers of triangles, and one without any pair; Cancelled; what the search for markers
-  /// throws.
+  /// Notes, under the target's name, doubtful markers, a match with a poor verdict
+  /// (Topic::poor_match), and a target that is inside out. Also notes faces that are the source's
+  /// in another order.
+  ///
+  /// Throws OptionError (Topic::other_faces) unless the target has the source's faces or a match is
+  /// given. Throws OptionError (Topic::shifted_markers) for markers that fit much better as
+  /// vertices one lower or higher. Throws MismatchError for other wrong markers and for markers
+  /// that fit a mirror image. Throws MismatchError for a correspondence with other numbers of
+  /// triangles or without any pair, and for a mesh that is only numbered differently. Throws
+  /// Cancelled, and what the search for markers throws.
   MatchedTarget(const FrameSource& source, Target target,
                 const std::optional<Positions>& source_rest = {}, const Context& context = {});
 
   const Target& operator*() const { return target_; }
-  /// None where the faces are the same.
+  /// Empty if the faces are the same.
   const std::optional<MatchReport>& report() const { return report_; }
 
  private:
@@ -118,41 +125,42 @@ struct OpeningAtRest {
   std::string_view name;
   double source = 0, target = 0;  ///< as in ComparedOpening
 
-  /// One of them is open as no face at rest is when the other's is so: it is not neutral.
+  /// True if one of them is open wider than resting faces differ: one face is not neutral.
   bool differs() const;
 };
 
-/// Of the openings that both faces have where their landmarks are known.
+/// Compares the openings that both faces have at rest. Landmarks locate the openings.
 std::vector<OpeningAtRest> openings_at_rest(const TriMesh& source, const TriMesh& target,
                                             const AutomaticMarkers& markers);
 
-/// An opening that only one of two faces has, as their landmarks show it.
+/// An opening that the landmarks show on only one of two faces.
 struct LoneOpening {
   std::string_view name;
   bool is_sources = false;
 };
 
-/// Those of two faces at rest. The other's landmarks are likely not on the edges of its opening,
-/// such as on an eyeball or inside of the socket, where they mislead whoever pairs the two.
+/// Finds the openings that only one of two faces has at rest. On the other face, the landmarks
+/// probably miss the edges of its opening. They may be on an eyeball or inside the socket, where
+/// they mislead the pairing.
 std::vector<LoneOpening> lone_openings(const TriMesh& source, const TriMesh& target,
                                        const AutomaticMarkers& markers);
 
-/// How far an eye or the mouth of a target is open over a sequence, beside the source's: distances
-/// of its edges in shares of each face's own opening's width (face_openings.h).
+/// How far an eye or the mouth opens on the source and on a target, over a sequence. Openness is
+/// the distance of the edges as a share of the opening's width on the same face (face_openings.h).
 struct ComparedOpening {
   std::string_view name;
   double source_least = 0, source_most = 0;
   double target_least = 0, target_most = 0;
-  /// Mean over frames of how much they differ.
+  /// Mean absolute difference over the frames.
   double difference = 0;
 
-  /// The source closes it, the target does not.
+  /// True if the source closes the opening and the target does not.
   bool stays_open() const;
 };
 
-/// Of the openings that both faces have where their landmarks are known. `result` follows `source`
-/// frame by frame; the rest poses are neutral. Throws MismatchError for other numbers of frames,
-/// what reading throws, Cancelled.
+/// Compares the openings that both faces have. Landmarks locate the openings. `result` follows
+/// `source` frame by frame, and the rest poses are neutral. Throws MismatchError for different
+/// numbers of frames, what reading throws, Cancelled.
 std::vector<ComparedOpening> compared_openings(const FrameSource& source, const FrameSource& result,
                                                const AutomaticMarkers& markers,
                                                const Context& context = {});

@@ -13,8 +13,8 @@ namespace mimetra {
 
 namespace {
 
-/// Parts of the work as progress shows them: until head motion is known, and until there are
-/// regions; of each target, until it is solved.
+/// Progress at which head motion is known, and at which the regions are known. For each target, the
+/// progress at which it is solved.
 constexpr double kSourceShare = 0.1;
 constexpr double kRegionShare = 0.7;
 constexpr double kSolveShare = 0.7;
@@ -40,7 +40,7 @@ std::vector<MatchedTarget> matched_targets(const FrameSource& sequence,
   return matched;
 }
 
-/// Whether a frame differs from the rest pose. Reads until it finds one.
+/// Whether a frame differs from the rest pose. Reads until one does.
 bool moves(const FrameSource& sequence) {
   const double least = kLeastMotion * sequence.diameter();
   for (int f = 0; f < sequence.frames(); ++f) {
@@ -50,8 +50,8 @@ bool moves(const FrameSource& sequence) {
   return false;
 }
 
-/// Where all frames are the rest pose the result would be perfect, and the target's neutral: says
-/// so, and of a single frame throws MismatchError.
+/// Notes that all frames equal the rest pose. The result would be the target's neutral, without any
+/// error. Throws MismatchError for a single such frame.
 void expect_motion(const FrameSource& sequence, const std::string& name, const Context& context) {
   if (moves(sequence)) return;
   const bool single = sequence.frames() == 1;
@@ -100,7 +100,7 @@ Choice choose(const Source& source, const TransferOptions& options, const Contex
           stopwatch.seconds()};
 }
 
-/// The regions that a target is solved by; none for all triangles.
+/// Returns the regions that a target is solved by; empty for all triangles.
 std::optional<Regions> regions_for(const Target& target, const Source& placed, Choice& choice,
                                    const SolveOptions& of_solving, const Context& context) {
   if (choice.selector) {
@@ -113,8 +113,8 @@ std::optional<Regions> regions_for(const Target& target, const Source& placed, C
   return (*choice.completion)(*choice.regions, target, of_solving, context);
 }
 
-/// Options that are on and hold a target off what the source does, "option 'smoothness'", as they
-/// are named in parameters.
+/// Active options that hold a target back from the source's motion, in the spelling of parameters:
+/// "option 'smoothness'".
 std::vector<std::string> holding_options(const Target& target, const SolveOptions& options) {
   std::vector<std::string> names;
   const auto add = [&names](bool is_on, const std::string& name) {
@@ -141,7 +141,7 @@ SolveOptions without_holds(SolveOptions options) {
   return options;
 }
 
-/// A target's solve and what it takes its error over.
+/// A target's solve, and the inputs of its error.
 struct TargetSolve {
   const PlacedSource& placed;
   const Target& target;
@@ -152,7 +152,7 @@ struct TargetSolve {
     return error_of(solution, placed.source, target, selection, options, context);
   }
 
-  /// Without what holds the target off the source; says nothing.
+  /// Error of a solve without the options that hold the target back; without notes.
   TransferError error_without_holds(const Context& context) const {
     const Target unruled = without_holds(target);
     const Context quiet = context.quiet();
@@ -160,8 +160,8 @@ struct TargetSolve {
   }
 };
 
-/// Says where a result is not usable, by its error before head motion is given back, and what may
-/// have made it so. Weights are found once more without the options that hold them.
+/// Notes a result that is probably unusable, by its error before head motion is given back, and the
+/// likely cause. Solves for weights again without the options that hold them back.
 void note_usability(const TargetSolve& solved, const TransferError& error,
                     const TransferOptions& options, const Context& context) {
   const Target& target = solved.target;
@@ -204,11 +204,11 @@ void note_usability(const TargetSolve& solved, const TransferError& error,
   }
 }
 
-/// Of an opening's width: rounding.
+/// Rounding error, as a share of an opening's width.
 constexpr double kNoMotion = 1e-9;
 
-/// Of a target for which markers were looked for. Says what does not close, but for what the
-/// regions' border lets not move at all.
+/// Compares the openings if markers were searched for. Notes openings that do not close, except
+/// those that the regions' border holds still.
 std::vector<ComparedOpening> openings_on(const MatchedTarget& target, const FrameSource& source,
                                          const Solution& solution, const Selection& selection,
                                          const Context& context) {
@@ -226,7 +226,7 @@ std::vector<ComparedOpening> openings_on(const MatchedTarget& target, const Fram
   return openings;
 }
 
-/// The discs of `completed` that `regions` lack.
+/// Adds the discs of `completed` that `regions` lack.
 void take_over(const Regions& completed, Regions& regions, const Triangles& triangles) {
   std::vector<Region> added;
   for (const Region& region : completed.regions) {
@@ -238,7 +238,7 @@ void take_over(const Regions& completed, Regions& regions, const Triangles& tria
   regions = with_added(regions, std::move(added), triangles);
 }
 
-/// What the regions of all targets together are; none where each has its own.
+/// Returns the common regions of all targets; empty if each target has its own.
 std::optional<Regions> regions_of(const std::vector<TransferredTarget>& targets, Choice& choice,
                                   const RegionChoiceOptions& options, const Triangles& triangles) {
   if (targets.size() == 1) return targets.front().regions;
@@ -270,7 +270,7 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
     check_rules(target, of_solving);
     check_border(std::get_if<GivenRegions>(&options.given), target, of_solving);
   }
-  // Nothing that is returned keeps it.
+  // The source keeps no ownership of `sequence`; nothing that is returned refers to it.
   const std::shared_ptr<const FrameSource> unowned(std::shared_ptr<const FrameSource>(), &sequence);
   const Source source = prepare_source(unowned, options.source, joint_search(targets, of_solving),
                                        context.part(0, kSourceShare));
@@ -302,7 +302,8 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
     TransferError error = of_target.error(solution, of_this.part(kSolveShare, 1));
     const double error_seconds = of_error.seconds();
     note_usability(of_target, error, options, done);
-    // Expressions that do not fade move the whole face: where regions end nothing does.
+    // Expressions that do not fade move the whole face, so they make no crease at the regions'
+    // border.
     if (solution.weights().size() == 0 || selection.weights.size() > 0) {
       note_crease(error, target, context);
     }

@@ -9,13 +9,12 @@
 
 namespace mimetra {
 
-/// What becomes of the head motion that was taken out of the source.
+/// Use of the head motion that was taken out of the source.
 enum class RemovedMotion {
-  keep,  ///< it is given back to the target
+  keep,  ///< give it back to the target
   drop
 };
 
-/// As people choose it.
 constexpr std::string_view choice_name(RemovedMotion value) {
   switch (value) {
     case RemovedMotion::keep:
@@ -30,11 +29,10 @@ struct TransferOptions {
   /// Use all triangles instead of regions.
   bool full = false;
   RemovedMotion head_motion = RemovedMotion::keep;
-  /// Regions, or components to find them by, that are known already; otherwise the source is
-  /// decomposed. Regions with a soft border of their own are taken as they are: no discs complete
-  /// them.
+  /// Known regions, or components from which regions are found; otherwise the source is decomposed.
+  /// Regions with a soft border are used unchanged, without completing discs.
   std::variant<std::monostate, GivenRegions, GivenComponents> given = {};
-  /// The steps.
+  /// Options of the steps.
   SourceOptions source = {};
   AnalysisOptions analysis = {};
   RegionChoiceOptions regions = {};
@@ -45,54 +43,56 @@ struct TransferOptions {
   static constexpr auto declared() { return std::tuple(kFull, kHeadMotion); }
 };
 
-/// What came of one target.
+/// Result for one target.
 struct TransferredTarget {
-  /// Its sequence has the source's head motion where that was taken out and is kept; its neutral is
-  /// then not its rest pose.
+  /// The poses of the target. They have the source's head motion if it was taken out and is kept.
+  /// The rest pose is then unknown, and the first frame replaces it.
   Solution solution;
-  /// Those of the source, completed for this target, or chosen for it, with their border on it
-  /// (with_border()); none for all triangles.
+  /// Regions of the source, completed or chosen for this target, with their border on it
+  /// (with_border()). Empty for all triangles.
   std::optional<Regions> regions;
   /// From the source's rest pose to the target's.
   Similarity similarity;
-  /// Before head motion was given back.
+  /// Error before head motion was given back.
   TransferError error;
-  /// With the source, null where the faces are the same; and how well they are paired.
+  /// Pairing with the source and its quality; null and empty if the faces are the same.
   std::shared_ptr<const Pairing> pairing = {};
   std::optional<MatchReport> match = {};
-  double error_seconds = 0;  ///< what measuring the error took
-  /// Eyes and mouth, where markers were looked for.
+  double error_seconds = 0;  ///< time of measuring the error
+  /// Eyes and mouth, if markers were searched for.
   std::vector<ComparedOpening> openings = {};
-  /// As in Selection: what share of the motion the target's vertices take; empty for a hard border.
+  /// Share of the motion that the target's vertices take, as in Selection; empty for a hard border.
   Eigen::VectorXd weights = {};
 };
 
 struct TransferResult {
   std::vector<TransferredTarget> targets;  ///< in the order of the targets
-  /// Of the source, and what was added for any of the targets; none for all triangles, and where
-  /// Selector::transfer chose others for each of several targets.
+  /// Regions of the source, with the discs that were added for any of the targets. Empty for all
+  /// triangles, and if each of several targets has its own regions (has_own_regions()).
   std::optional<Regions> regions;
-  std::optional<Components> components;  ///< that the regions come from
+  std::optional<Components> components;  ///< source of the regions
   HeadMotionTaken head_motion;           ///< of the source
   double region_seconds = 0;             ///< decomposition and choice of regions, for all targets
 };
 
-/// The main job: transfers the deformation of a sequence to each of some targets. The rest pose and
-/// the head motion of the source are settled, its regions found, and the target's poses solved for
-/// on their triangles, or those that are paired with them. What depends on the source only is done
-/// once. The source is read in blocks, several times, and no more of it is held than a
-/// decomposition within its options' memory does; the result does not need it.
+/// Transfers the deformation of a sequence to each of several targets. Takes out the source's head
+/// motion, finds its regions, and solves for the targets' poses on the regions' triangles. Work
+/// that depends only on the source is done once.
 ///
-/// Notes a result that is likely not usable, because much of the deformation is missing or many
-/// triangles are flipped (Topic::poor_condition where there are regions). Where options hold the
-/// weights off the source (smoothness, ridge, sparsity, rules and the like), these are named, and
-/// it is solved once more without them to say what that gives. Notes a crease at the regions'
-/// border (Topic::visible_crease), and eyes and mouths that close on the source only.
+/// The source is read in blocks, several times. No more of it is in memory than a decomposition
+/// within its memory limit needs. The result does not need the source.
 ///
-/// Throws std::invalid_argument for a full transfer by weights of each region or with a falloff,
-/// and what prepare_source(), MatchedTarget(), analyse(), analysis_of(), check_regions(),
-/// check_border(), choose_regions(), RegionSelector, bordered_selection() and solve() throw;
-/// Cancelled. A target that does not fit is refused before anything is computed.
+/// Notes a result that is probably unusable because it lacks much of the deformation or flips many
+/// triangles (Topic::poor_condition if there are regions). If options such as smoothness, ridge,
+/// sparsity or rules hold the weights back, the note names them. It then gives the error of another
+/// solve without them. Notes a crease at the regions' border (Topic::visible_crease), and eyes and
+/// mouths that close only on the source.
+///
+/// Throws std::invalid_argument for a full transfer with weights of each region or with a falloff.
+/// Throws what prepare_source(), MatchedTarget(), analyse(), analysis_of(), check_regions(),
+/// check_border(), choose_regions(), RegionSelector, bordered_selection() and solve() throw. Throws
+/// MismatchError for a single frame that is the rest pose; Cancelled. A target that does not fit is
+/// refused before anything is computed.
 TransferResult transfer(const FrameSource& source, const std::vector<Target>& targets,
                         const TransferOptions& options = {}, const Context& context = {});
 

@@ -17,17 +17,17 @@ namespace mimetra {
 
 namespace {
 
-/// Distance between centres that are compared, as a share of the radius.
+/// Distance between compared centres, as a share of the radius.
 constexpr double kSpacing = 0.25;
 
-/// Distances by the heat method may be shorter than the straight way: a ball that is to hold the
-/// disc has this many of its radii.
+/// Radius of a ball that contains the disc, in radii of the disc. Distances by the heat method can
+/// be shorter than the straight line.
 constexpr double kBall = 1.1;
 
-/// Discs that are measured at a time: geodesic distances of several cost less.
+/// Discs that are measured together, which costs less per disc.
 constexpr std::size_t kBatch = 8;
 
-/// Points in cubes, so that those around a place are found.
+/// Points in cubic cells, to find the points near a place.
 class PointGrid {
  public:
   explicit PointGrid(double side) : side_(side) {}
@@ -36,7 +36,7 @@ class PointGrid {
     cells_[key(cell(point))].push_back(number);
   }
 
-  /// Calls `work` with the points of the cube at `point` and of the 26 around it.
+  /// Calls `work` for each point in the cell of `point` and the 26 cells around it.
   template <typename Work>
   void for_near(const Eigen::RowVector3d& point, const Work& work) const {
     const Cell center = cell(point);
@@ -59,7 +59,7 @@ class PointGrid {
     return {along(0), along(1), along(2)};
   }
 
-  /// Cells far from each other may share one: who asks compares distances.
+  /// Distant cells may share a key, so callers must compare distances.
   static std::uint64_t key(const Cell& cell) {
     constexpr int kBits = 21;
     constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
@@ -72,7 +72,7 @@ class PointGrid {
   std::unordered_map<std::uint64_t, std::vector<int>> cells_;
 };
 
-/// Without the digits that rounding decides, for an order that does not depend on them.
+/// Drops the digits that rounding decides, so that an order does not depend on them.
 double without_rounding(double x) {
   constexpr double kSteps = 1 << 30;
   int exponent = 0;
@@ -80,7 +80,7 @@ double without_rounding(double x) {
   return std::ldexp(std::round(kSteps * mantissa), exponent);
 }
 
-/// Numbers of the entries above 0, from the largest to the smallest.
+/// Indices of the positive entries, from the largest to the smallest.
 std::vector<int> falling(const Eigen::VectorXd& values) {
   std::vector<int> order;
   for (int i = 0; i < values.size(); ++i) {
@@ -91,7 +91,7 @@ std::vector<int> falling(const Eigen::VectorXd& values) {
   return order;
 }
 
-/// Sum over the triangles of some vertices, each triangle once.
+/// Sum over the triangles of some vertices, counting each triangle once.
 class TriangleSum {
  public:
   explicit TriangleSum(const Eigen::VectorXd& amounts)
@@ -124,15 +124,15 @@ std::vector<std::vector<int>> triangles_of_vertices(int vertices, const Triangle
   return of_vertex;
 }
 
-/// The disc around a vertex from which the distances to all are known (N). `inside` (N, empty for
-/// all): vertices that it may hold.
+/// Disc around a vertex, from its distances to all vertices (N). `inside` (N, empty for all):
+/// vertices that it may contain.
 Disc disc_around(VertexIndex center, const Eigen::Ref<const Eigen::VectorXd>& distances,
                  double radius, const std::vector<std::vector<int>>& triangles_of_vertex,
                  const std::vector<bool>& inside) {
   Disc disc;
   disc.center = center;
   for (VertexIndex v = 0; v < distances.size(); ++v) {
-    // A centre on no triangle has no distances, not even to itself.
+    // A centre without triangles has no distances, not even to itself.
     const bool is_near = distances[v] <= (1 + kNearTie) * radius || v == center;
     if (!is_near || !(inside.empty() || inside[v])) continue;
     disc.vertices.push_back(v);
@@ -226,7 +226,7 @@ Disc DiscSearch::best(const Eigen::VectorXd& amounts) {
 
 namespace {
 
-/// Discs that are measured at a time: their distances (N each) are not kept.
+/// Discs that are measured together; their distances (N each) are not kept.
 constexpr std::size_t kDiscsPerBatch = 16;
 
 void check_spread(const Positions& positions, const FarthestDiscsOptions& options) {
@@ -244,7 +244,7 @@ void check_spread(const Positions& positions, const FarthestDiscsOptions& option
   }
 }
 
-/// The first vertex whose number is the largest, but for near ties; -1 where none is above 0.
+/// First vertex with the largest number, apart from near ties; -1 if no number is positive.
 VertexIndex farthest_vertex(const Eigen::VectorXd& squares) {
   VertexIndex best = -1;
   double most = 0;

@@ -16,7 +16,7 @@ void check_falloff(double falloff) {
   throw std::invalid_argument("falloff is " + std::to_string(falloff) + "; it must be above 0");
 }
 
-/// Vertices of weight 1 that share a triangle with another one, ascending.
+/// Vertices of weight 1 that share a triangle with another weight, ascending.
 std::vector<VertexIndex> rim_of(const Eigen::VectorXd& weights, const Triangles& triangles) {
   std::vector<bool> on_rim(weights.size(), false);
   for (const auto& corners : triangles.rowwise()) {
@@ -32,7 +32,7 @@ std::vector<VertexIndex> rim_of(const Eigen::VectorXd& weights, const Triangles&
   return rim;
 }
 
-/// 1 at distance 0, 0 from the falloff on.
+/// 1 at distance 0, falling to 0 at the falloff.
 double bump(double distance, double falloff) {
   if (!(distance < falloff)) return 0;
   const double t = distance / falloff;
@@ -97,7 +97,7 @@ Eigen::SparseMatrix<double> partition_of_unity(const Triangles& triangles, const
   for (Eigen::Index v = 0; v < vertices; ++v) {
     const double sum = shares.row(v).head(count).sum();
     const double outside = (1 - shares.row(v).head(count).array()).prod();
-    // Where bumps are small this is nearly 1: the sum is what the regions claim.
+    // The factor is nearly 1 for small bumps, so that shares stay close to them.
     if (sum > 0) shares.row(v).head(count) *= (1 - outside) / sum;
     shares(v, count) = sum > 0 ? outside : 1;
   }

@@ -19,10 +19,10 @@
 namespace mimetra {
 namespace {
 
-// Share of its component's energy that RegionShape::support holds.
+// Share of its component's energy in a region of RegionShape::support.
 constexpr double kSupportShare = 0.95;
 
-// Rounding of a sum of shares that is 1 in real numbers, for millions of vertices.
+// Rounding of a sum of shares that should be 1, for millions of vertices.
 constexpr double kSumRounding = 1e-9;
 
 void require_valid(const RegionOptions& options) {
@@ -33,15 +33,14 @@ void require_valid(const RegionOptions& options) {
   check_options(options);
 }
 
-/// For one value a vertex, or none.
+/// Throws unless there is one value per vertex, or none.
 void require_size(const std::string& name, const std::vector<bool>& values, int vertices) {
   if (values.empty() || static_cast<int>(values.size()) == vertices) return;
   throw std::invalid_argument(name + ": " + std::to_string(values.size()) + " vertices, expected " +
                               std::to_string(vertices));
 }
 
-/// Components that move the same vertex most, strongest first, and how far all vertices are from
-/// it.
+/// Components that move the same vertex most, strongest first, and the distances from that vertex.
 struct Site {
   std::vector<int> components;
   VertexIndex center;
@@ -49,7 +48,7 @@ struct Site {
   Eigen::VectorXd distances;
 };
 
-/// Components of which one moves, from the strongest to the weakest.
+/// Components that did not die, from the strongest to the weakest.
 std::vector<int> living_components(const Components& components, const Eigen::VectorXd& energies) {
   std::vector<int> order;
   for (int k = 0; k < components.count(); ++k) {
@@ -59,7 +58,7 @@ std::vector<int> living_components(const Components& components, const Eigen::Ve
   return order;
 }
 
-/// One site per centre, the strongest first. A centre at distance zero is the same point of the
+/// One site per centre, strongest first. A centre at distance zero is the same point of the
 /// surface, across a seam.
 std::vector<Site> sites_of(const Components& components, const DistanceFunction& distances) {
   const Eigen::VectorXd energies = motion_energy(components);
@@ -107,14 +106,14 @@ std::vector<std::string> notes_on(const Components& components, const std::vecto
   return notes;
 }
 
-/// Motion energy of what some components give together on each vertex:
-/// sum over frames of |sum over k of w_k c_k^(i)|^2 (N).
+/// Motion energy on each vertex of the sum of some components: sum over frames of |sum over k of
+/// w_k c_k^(i)|^2 (N).
 Eigen::VectorXd energy_on_vertices(const Components& components, const std::vector<int>& some) {
   fix_product_blocking();
   const Eigen::MatrixXd weights = components.weights(Eigen::all, some);
   const Eigen::MatrixXd gram = weights.transpose() * weights;
   Eigen::VectorXd energy(components.vertices());
-  // In blocks, so that no second copy of all components is made.
+  // Works in blocks to avoid a second copy of all components.
   constexpr Eigen::Index kBlock = 4096;
   for (Eigen::Index first = 0; first < energy.size(); first += kBlock) {
     const Eigen::Index count = std::min(kBlock, energy.size() - first);
@@ -128,13 +127,14 @@ Eigen::VectorXd energy_on_vertices(const Components& components, const std::vect
 std::vector<VertexIndex> disc(const Site& site, double radius) {
   std::vector<VertexIndex> vertices;
   for (VertexIndex v = 0; v < site.distances.size(); ++v) {
-    // A centre on no triangle has no distances, not even to itself.
+    // A centre without triangles has no distances, not even to itself.
     if (site.distances[v] <= (1 + kNearTie) * radius || v == site.center) vertices.push_back(v);
   }
   return vertices;
 }
 
-/// The fewest reachable vertices that carry kSupportShare of what the reachable ones carry.
+/// Fewest vertices that carry kSupportShare of the energy, among vertices with a path to the
+/// centre.
 std::vector<VertexIndex> energetic_vertices(const Site& site, const Eigen::VectorXd& energy) {
   std::vector<VertexIndex> order;
   for (VertexIndex v = 0; v < energy.size(); ++v) {
@@ -159,7 +159,7 @@ double farthest(const Site& site, const std::vector<VertexIndex>& vertices) {
   return radius;
 }
 
-/// The vertices of a site's region; its share of the energy is not known here.
+/// Region of a site, without its share of the energy.
 Region region_around(const Site& site, const Components& components, RegionShape shape,
                      double radius) {
   Region region;
@@ -190,7 +190,6 @@ std::vector<int> triangles_touching(const std::vector<bool>& inside, const Trian
   return touching;
 }
 
-/// Energy on the vertices that are `inside`.
 double energy_inside(const Eigen::VectorXd& vertex_energy, const std::vector<bool>& inside) {
   double sum = 0;
   for (Eigen::Index v = 0; v < vertex_energy.size(); ++v) {
@@ -205,8 +204,7 @@ std::vector<bool> above_zero(const Eigen::VectorXd& weights) {
   return above;
 }
 
-/// Fills what follows from the vertices of the regions, and from their weights where there are any:
-/// the union, L and the shares.
+/// Fills in the union, L and the shares from the vertices of the regions and their weights.
 void complete(Regions& regions, const Triangles& triangles) {
   const bool hard = regions.weights.size() == 0;
   regions.inside = hard ? std::vector<bool>(regions.vertices, false) : above_zero(regions.weights);
@@ -222,8 +220,7 @@ void complete(Regions& regions, const Triangles& triangles) {
   regions.all_triangles = static_cast<int>(triangles.rows());
 }
 
-/// How many of the first regions it takes until their union holds the share `coverage`; all, where
-/// they do not.
+/// Number of first regions whose union reaches the share `coverage`, or of all regions.
 std::size_t regions_to_cover(const Regions& regions, double coverage) {
   std::vector<bool> inside(regions.vertices, false);
   double held = 0;
@@ -241,7 +238,7 @@ std::string whole_percent(double share) {
   return std::to_string(static_cast<int>(std::lround(100 * share))) + " %";
 }
 
-/// The share of the motion on parts of the mesh that no region reaches.
+/// Share of the motion on connected parts of the mesh without any region.
 double energy_on_parts_without_region(const Regions& regions, const SurfaceParts& parts) {
   std::vector<bool> reached(parts.count(), false);
   for (int v = 0; v < regions.vertices; ++v) {

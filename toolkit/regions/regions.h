@@ -14,13 +14,12 @@ namespace mimetra {
 
 struct Simplification;
 
-/// What a region of interest holds.
+/// Vertices that a region of interest contains.
 enum class RegionShape {
   disc,    ///< vertices within a geodesic radius of the component's centre
-  support  ///< fewest vertices that carry 95 % of the component's energy
+  support  ///< fewest vertices that contain 95 % of the component's energy
 };
 
-/// As people choose it.
 constexpr std::string_view choice_name(RegionShape value) {
   switch (value) {
     case RegionShape::disc:
@@ -36,13 +35,13 @@ struct RegionOptions {
   /// Radius of a disc, length > 0; by default this share of the rest pose's diameter().
   static constexpr double kRadiusShare = 0.1;
   std::optional<double> radius = {};
-  /// Take the strongest components until the union holds this share of the motion energy; without
-  /// it, all components.
+  /// Take the strongest components until the union contains this share of the motion energy. If
+  /// empty, take all components.
   std::optional<double> coverage = {};
-  /// Where regions may lie (N), empty for everywhere: they hold no other vertex.
+  /// Vertices that regions may contain (N); empty for all.
   std::vector<bool> inside = {};
-  /// Vertices around which no region is made (N), empty for none of them: a component that moves
-  /// one of them most gives none.
+  /// Vertices that may not be centres (N); empty for none. A component that moves one of them most
+  /// gives no region.
   std::vector<bool> no_centers = {};
   /// Distances along the rest pose; by default SurfaceDistances of its exactly welded vertices.
   DistanceFunction distances = {};
@@ -53,42 +52,42 @@ struct RegionOptions {
   static constexpr auto declared() { return std::tuple(kShape, kCoverage); }
 };
 
-/// A region of interest: where one component moves the face.
+/// A region of interest: vertices that one component moves.
 struct Region {
-  int component = -1;  ///< row of Components; -1 for a region that was read
+  int component = -1;  ///< row of Components; -1 for a region from a file
   VertexIndex center = -1;
-  double radius = 0;  ///< length; for RegionShape::support the distance of its farthest vertex
+  double radius = 0;  ///< length; distance of the farthest vertex for RegionShape::support
   std::vector<VertexIndex> vertices;  ///< ascending
   double energy = 0;                  ///< motion energy |w_k|^2 |c_k|^2 of its component(s)
   double energy_share = 0;            ///< share of all motion energy on its vertices
-  /// Connected part of the surface that the centre lies on, 0 for the largest, and that part's
-  /// share of the area; -1 for a region that was read.
+  /// Connected part of the surface that contains the centre, 0 for the largest, and the part's
+  /// share of the area. -1 for a region from a file.
   int surface_part = -1;
   double surface_share = 0;
-  /// The target's expression that it was added for; empty for the source's own.
+  /// Target expression for which the region was added; empty for regions of the source.
   std::string added_for = {};
 };
 
-/// Regions in the order of their component's motion energy, and the triangles they take part in.
+/// Regions in the order of their component's motion energy, and their triangles.
 struct Regions {
   int vertices = 0;  ///< N of the mesh
   std::vector<Region> regions;
   std::vector<bool> inside;    ///< vertex is in the union (N)
   std::vector<int> triangles;  ///< L: triangles with a vertex in the union, ascending
   int all_triangles = 0;       ///< M of the mesh
-  double energy_share = 0;     ///< share of the motion energy that the union holds, 0 if unknown
-  /// Share of the motion energy on each vertex (N); empty for regions that were read.
+  double energy_share = 0;     ///< share of the motion energy in the union, 0 if unknown
+  /// Share of the motion energy on each vertex (N); empty for regions from files.
   Eigen::VectorXd vertex_energy;
-  /// What the user should know: components with one centre were merged, the coverage asked for was
-  /// not reached, a component died.
+  /// Notes for the user: components with one centre were merged, the requested coverage was not
+  /// reached, or a component died.
   std::vector<std::string> notes;
-  /// Share of the motion that each vertex takes (N), in [0, 1], where the border is soft: vertices
-  /// inside are then those that take some, while `regions` may hold only those that take all of it.
-  /// Empty for a hard border.
+  /// Share of the motion that each vertex takes (N), in [0, 1], for a soft border; empty for a hard
+  /// border. With a soft border, all vertices with a positive share are inside. `regions` may
+  /// contain only the vertices with share 1.
   Eigen::VectorXd weights = {};
 
   int vertex_count() const;
-  /// False for regions that were painted or read without it.
+  /// False for painted regions and regions from files without energy.
   bool energy_is_known() const { return vertex_energy.size() > 0 || energy_share > 0; }
   double vertex_share() const { return vertices ? double(vertex_count()) / vertices : 0; }
   double triangle_share() const {
@@ -99,71 +98,68 @@ struct Regions {
 /// Motion energy of each component, |w_k|^2 |c_k|^2 (K).
 Eigen::VectorXd motion_energy(const Components& components);
 
-/// Region k = the vertices within the radius of the centre of component k. Ordered by motion
-/// energy; components with the same centre (also across a welded seam) are merged. A vertex that no
-/// way along the surface reaches is in no region. Throws std::invalid_argument for options out of
-/// range, and for numbers of vertices `inside` or `no_centers` that are not the mesh's.
+/// One region for each centre of the components, in the order of motion energy. Components with the
+/// same centre (also across a welded seam) are merged. Vertices without a path to the centre are
+/// left out. Throws std::invalid_argument for options out of range, and if `inside` or `no_centers`
+/// does not have one entry per vertex.
 Regions find_regions(const Components& components, const RegionOptions& options = {},
                      const Context& = {});
 
-/// The first `count` regions only (all, where there are fewer). Throws std::invalid_argument where
+/// Keeps only the first `count` regions (all, if there are fewer). Throws std::invalid_argument if
 /// count < 1.
 Regions strongest(const Regions& regions, int count, const Triangles& triangles);
 
-/// The first regions, as many as it takes until their union holds the share `coverage` of the
-/// motion energy, or all, with a note. \pre vertex_energy is known. `rest` N x 3.
+/// Keeps the first regions until their union contains the share `coverage` of the motion energy.
+/// Keeps all, with a note, if they contain less. `rest` N x 3. \pre vertex_energy is known
 Regions covering(Regions regions, double coverage, const Positions& rest,
                  const Triangles& triangles);
 
-/// How many of the first regions have no more than this share of the triangles in their union; 0
-/// where the first has more.
+/// Number of first regions whose union contains at most this share of the triangles; 0 if the first
+/// contains more.
 int regions_within(const Regions& regions, double share, const Triangles& triangles);
 
-/// The regions and further ones behind them, of which vertices, centre, radius and what they were
-/// added for are known.
+/// Appends regions. Their vertices, centre, radius and added_for must be set.
 Regions with_added(const Regions& regions, std::vector<Region> added, const Triangles& triangles);
 
-/// Discs that were found on a simplified mesh, on the one that it was made from: of the same radius
-/// around the same vertices, by `distances` along that one, whose triangles these are (M x 3).
-/// `vertex_energy` (N): each vertex' share of the motion energy on it, of which regions hold
-/// theirs. Of vertices not `inside` (N, empty for all) none is in a region. Throws
-/// std::invalid_argument for regions of another number of vertices than were kept, and for one that
-/// has no centre; what the distances throw.
+/// Carries discs from a simplified mesh to the original mesh: discs of the same radius around the
+/// same vertices. `distances` and `triangles` (M x 3) are the original mesh's. `vertex_energy` (N):
+/// share of the motion energy on each vertex. `inside` (N, empty for all): vertices that regions
+/// may contain. Throws std::invalid_argument if the regions do not fit the simplified mesh or have
+/// no centre, and whatever the distances throw.
 Regions carried_regions(const Regions& regions, const Simplification& simplified,
                         Eigen::VectorXd vertex_energy, const Triangles& triangles,
                         const DistanceFunction& distances, const std::vector<bool>& inside = {});
 
-/// One region per entry from vertex lists. Throws MismatchError that names the first vertex
-/// outside 0 .. vertices - 1.
+/// One region per list of vertices. Throws MismatchError that names the first vertex outside [0,
+/// vertices).
 Regions regions_from_vertices(int vertices, const Triangles& triangles,
                               const std::vector<std::vector<VertexIndex>>& lists);
 
-/// Throws std::invalid_argument, which begins with `weights`, unless there is one weight in [0, 1]
-/// for each of so many vertices.
+/// Throws std::invalid_argument, which begins with `weights`, unless there are `vertices` weights
+/// in [0, 1].
 void check_weights(const Eigen::VectorXd& weights, Eigen::Index vertices);
 
-/// One region, of the vertices that take a share of the motion: `weights` (N), each in [0, 1], of
-/// which one is above 0. Throws std::invalid_argument for others.
+/// A single region of the vertices that take a share of the motion. `weights` (N) are in [0, 1]; at
+/// least one is positive. Throws std::invalid_argument otherwise.
 Regions painted_region(const Eigen::VectorXd& weights, const Triangles& triangles);
 
-/// Regions with a soft border: the vertices of weight above 0 are inside, and no others. Throws
-/// what check_weights() throws.
+/// Regions with a soft border: exactly the vertices of positive weight are inside. Throws as
+/// check_weights().
 Regions with_weights(Regions regions, const Eigen::VectorXd& weights, const Triangles& triangles);
 
-/// Triangles with a corner of weight above 0, ascending.
+/// Triangles with a corner of positive weight, ascending.
 std::vector<int> triangles_in(const Eigen::VectorXd& weights, const Triangles& triangles);
 
-/// Every triangle of a mesh: the regions of a full transfer.
+/// Every triangle of a mesh, as used for a full transfer.
 std::vector<int> all_triangles(const Triangles& triangles);
 
-/// Fields `region` (index of the strongest region, -1 outside), `region_count`, `roi` (0/1) on
-/// vertices and `in_L` on triangles; `added` (1 in added regions only) on vertices where there are
-/// any, and `weight` on vertices where the border is soft.
+/// Fields `region` (index of the strongest region, -1 outside), `region_count` and `roi` (0/1) on
+/// vertices, and `in_L` on triangles. If any regions were added, `added` is 1 on vertices whose
+/// strongest region was added. Soft borders also have `weight` on vertices.
 std::vector<Field> fields_of(const Regions& regions);
 
-/// `support_k` (support map) and `component_k` (displacement vectors, unit of the mesh) of the
-/// component of each region k of `regions`, numbered as in the field `region`. Regions that were
-/// read have none.
+/// Fields `support_k` (support map) and `component_k` (displacement vectors, unit of the mesh) of
+/// the component of each region k, numbered as in the field `region`. Regions from files have none.
 std::vector<Field> component_fields(const Components& components, const Regions& regions);
 
 }  // namespace mimetra

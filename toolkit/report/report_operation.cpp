@@ -20,7 +20,7 @@ namespace mimetra {
 namespace {
 
 struct ReportCall {
-  /// Numbers of components in the table, besides the run's own.
+  /// Further numbers of components for the table.
   std::vector<int> counts = {};
   ReportView view = {};
 
@@ -39,7 +39,7 @@ BoundParameters<ReportCall> report_parameters() {
       .add(&ReportCall::view, view);
 }
 
-/// Pictures that a run cannot give are refused before anything is computed.
+/// Refuses pictures that the run cannot give before anything is computed.
 void check_pictures(const Invocation& invocation) {
   const RunRead& run = *invocation.input("run").origin.run;
   const std::string manifest = run.record.manifest.string();
@@ -115,7 +115,7 @@ Outcome run_report(const Invocation& invocation) {
   return outcome;
 }
 
-/// What drawing takes, measured: OpenGL on a processor, and each vertex of each tile of a sheet.
+/// Measured memory for drawing: OpenGL on a processor, and each vertex of each tile of a sheet.
 double drawing_bytes(int vertices, int components) {
   constexpr double kOpenGl = 2.5e8;
   constexpr double kVertex = 500;
@@ -124,8 +124,8 @@ double drawing_bytes(int vertices, int components) {
   return kOpenGl + kVertex * vertices * tiles;
 }
 
-/// The decompositions, one after the other, and what is kept: the source, both transfers, and the
-/// poses of the viewer.
+/// Memory of the largest decomposition, and of all data that are kept: the source, both transfers,
+/// and the poses of the viewer.
 double memory(const Invocation& invocation) {
   const Invocation& call = invocation.input("run").origin.run->invocation;
   const NamedData& source = call.input(call.inputs.contains("source") ? "source" : "sequence");

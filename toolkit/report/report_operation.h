@@ -4,7 +4,7 @@
 
 namespace mimetra {
 
-/// Adds .html of pages, and the operation `report`: a page that shows a run.
+/// Adds the format .html of pages, and the operation `report`, which shows a run as a page.
 void add_report(OperationTable& table);
 
 }  // namespace mimetra

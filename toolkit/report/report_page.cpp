@@ -12,7 +12,7 @@ namespace mimetra {
 
 namespace {
 
-/// How a report looks: system fonts on white, as wide as the window up to a limit.
+/// Style of a report: system fonts on white, as wide as the window up to a limit.
 constexpr const char* kReportStyle = R"css(
 :root { --ink: #1c1f24; --soft: #5b626d; --line: #dfe2e6; --accent: #0072b2; }
 * { box-sizing: border-box; }
@@ -91,9 +91,9 @@ details table { max-width: 36rem; margin-top: .5rem; }
 }
 )css";
 
-/// A picture as a page holds it.
+/// A picture as the page contains it.
 struct PagePicture {
-  std::string address;  ///< with its content
+  std::string address;  ///< a data URL with the picture itself
   int width;
   int height;
 };
@@ -104,7 +104,8 @@ struct PicturePair {
   PagePicture narrow;
 };
 
-/// Compressed beside what is drawn next, unless there is one thread only.
+/// Compresses the picture in another thread while the next is drawn, unless there is only one
+/// thread.
 std::future<PagePicture> page_picture(Image image, const Context& context) {
   const auto launch = context.threads() == 1 ? std::launch::deferred : std::launch::async;
   return std::async(launch, [image = std::move(image)] {
@@ -142,12 +143,12 @@ std::string number(const std::optional<double>& value, int digits = 3) {
   return value ? readable(*value, digits) : "";
 }
 
-/// `value` with its sign and two decimals: what is worse than full is negative.
+/// `value` with its sign and two decimals. Negative values are worse than the full transfer.
 std::string signed_percent(double value) {
   return (std::signbit(value) ? "" : "+") + fixed(value, 2);
 }
 
-/// For a POSIX shell.
+/// Quotes an argument for a POSIX shell.
 std::string shell_quoted(const std::string& argument) {
   const bool is_plain = std::ranges::all_of(argument, [](unsigned char letter) {
     return std::isalnum(letter) || letter >= 0x80 ||
@@ -189,7 +190,7 @@ class PageText {
     return "<dl class=\"facts\">\n" + list + "</dl>\n";
   }
 
-  /// What is not as in the files.
+  /// Differences between the display and the files.
   std::string remarks() const {
     std::string text;
     if (study_.moved_head) text += "Shown without the head's motion. ";
@@ -282,7 +283,7 @@ class PageText {
   }
 
  private:
-  /// Nothing for no items.
+  /// Titled list of items; empty if there are none.
   static std::string list(const std::string& title, const std::vector<std::string>& items) {
     if (items.empty()) return "";
     std::string lines;
@@ -319,7 +320,7 @@ ViewerScene scene_of(const ReportStudy& study, const ReportView& view) {
 }
 
 std::string charts(const std::vector<Chart>& list, const Context& context) {
-  // Large letters: on a phone the picture is drawn at less than half its size.
+  // Large letters, because phones show the picture at less than half its size.
   constexpr ChartSize kSize{900, 700, 26};
   std::vector<std::future<PagePicture>> pictures;
   for (const Chart& chart : list) {
@@ -330,13 +331,13 @@ std::string charts(const std::vector<Chart>& list, const Context& context) {
   return "<div class=\"charts\">\n" + figures + "</div>\n";
 }
 
-/// How a sheet is drawn for one kind of window: pixels as many as that shows.
+/// Size of a sheet for one kind of window, which shows about as many pixels.
 struct SheetSize {
   int columns;
   int tile_height;
   int letters;
 
-  /// With `share` of its pixels, and a little less.
+  /// Size with `share` of the pixels, and a little less.
   SheetSize shrunk(double share) const {
     const double factor = 0.95 * std::sqrt(share);
     return {columns, std::max(kSmallestTile, static_cast<int>(tile_height * factor)),
@@ -347,7 +348,7 @@ struct SheetSize {
   static constexpr int kSmallestLetters = 9;
 };
 
-/// Smaller where the pictures of a mesh with much detail would take more than `bytes`.
+/// Draws both pictures, and shrinks them if they would take more than `bytes`.
 template <typename SheetOf>
 PicturePair drawn(const SheetOf& sheet_of, SheetSize wide, SheetSize narrow, std::size_t bytes,
                   const Context& context) {
@@ -395,7 +396,7 @@ std::string gallery_section(const Components& components, const ReportView& view
       figure(drawn(sheet, {8, 210, 16}, {3, 220, 19}, bytes, context), "Gallery of components"));
 }
 
-/// What follows the player; strip and gallery leave something of `largest` bytes for it.
+/// Sections below the player. Strip and gallery leave part of `largest` bytes for the player.
 std::string sections_below(const PageText& page, const ReportStudy& study, const ReportView& view,
                            std::size_t largest, const Context& context) {
   const std::size_t each = largest * 3 / 10;
@@ -432,7 +433,7 @@ ReportPage report_page(const ReportStudy& study, const ReportView& view, std::st
       page.title() + "</title>\n<style>" + kReportStyle +
       "</style>\n</head>\n<body>\n<header>\n<h1>" + page.title() + "</h1>\n" + page.remarks() +
       page.facts() + "</header>\n";
-  // Before another thread: VTK must be loaded by one at a time.
+  // Load VTK before another thread starts, because only one thread may load it.
   const DrawingSession session;
   const std::string player = "<section>\n" + page.player();
   const std::string before = "<script type=\"application/json\" id=\"performance\">";
@@ -445,7 +446,7 @@ ReportPage report_page(const ReportStudy& study, const ReportView& view, std::st
     if (viewer.empty() || used >= largest) return PackedScene{};
     return packed(scene_of(study, view), largest - used, packing);
   };
-  // Meanwhile, as if pictures took nothing. Only this thread reports progress.
+  // Pack the scene meanwhile, as if pictures took no bytes. Only this thread reports progress.
   std::future<PackedScene> ahead =
       std::async(context.threads() == 1 ? std::launch::deferred : std::launch::async, packed_beside,
                  always, Context().with_threads(context.threads()));

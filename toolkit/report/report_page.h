@@ -10,7 +10,7 @@
 
 namespace mimetra {
 
-/// From where meshes are seen, and their unit of length.
+/// View of the meshes, and their unit of length.
 struct ReportView {
   Viewpoint viewpoint = {};
   std::string unit = {};
@@ -18,27 +18,27 @@ struct ReportView {
   static constexpr Option kUnit{"unit", &ReportView::unit};
 };
 
-/// Source, its regions, and what became of it, over time.
+/// Film strip of the source, its regions and the result.
 Sheet report_strip(const ReportStudy& study, const ReportView& view, int columns);
 
-/// Components by their motion energy, at most `most` of those that move.
+/// At most `most` components that move, ordered by motion energy.
 std::vector<int> strongest_components(const Components& components, std::size_t most);
 
-/// Components at weight 1, coloured by displacement from none to their own largest. Titles tell
-/// this and the component's number, from 0 as in files.
+/// Components at weight 1, coloured by displacement, up to each one's largest. Titles give this
+/// largest displacement and the component's number, 0-based as in files.
 Sheet component_gallery(const Components& components, const std::vector<int>& shown,
                         const ReportView& view, int columns);
 
-/// Weights of the strongest components over time, and of the target's strongest expressions.
+/// Weights over time: of the strongest components, and of the target's strongest expressions.
 std::vector<Chart> weight_charts(const ReportStudy& study);
 
 /// Table I: error and time against the share of triangles. \pre the study has a transfer
 std::vector<Chart> table_charts(const ReportedTransfer& transfer, const std::string& unit);
 
-/// A report is smaller than this: bytes.
+/// Maximum size of a report in bytes.
 constexpr std::size_t kLargestReport = 10'000'000;
 
-/// The strongest components that it shows.
+/// Maximum number of components in the gallery.
 constexpr std::size_t kMostInGallery = 60;
 
 struct ReportPage {
@@ -46,9 +46,9 @@ struct ReportPage {
   int viewer_frames = 0;  ///< 0 without a 3D viewer
 };
 
-/// Draws and writes the page of a study, smaller than `largest` bytes (of which names and tables
-/// need some ten thousand): frames are thinned and pictures shrunk. It asks for nothing from
-/// elsewhere. `viewer`: the script of its 3D viewer, empty for none.
+/// Draws and writes the page of a study. The page loads nothing from elsewhere. Frames are thinned
+/// and pictures shrunk to stay below `largest` bytes. Names and tables alone need about ten
+/// thousand. `viewer`: script of the 3D viewer, empty for none.
 ReportPage report_page(const ReportStudy& study, const ReportView& view, std::string_view viewer,
                        std::size_t largest = kLargestReport, const Context& context = {});
 

@@ -10,7 +10,7 @@ namespace mimetra {
 
 namespace {
 
-/// Lines in a chart that can still be told apart.
+/// Maximum number of lines that remain distinguishable in a chart.
 constexpr std::size_t kMostLines = 6;
 
 Sheet sheet_seen_from(const ReportView& view) {
@@ -39,7 +39,7 @@ std::vector<double> to_vector(const Eigen::VectorXd& values) {
   return {values.begin(), values.end()};
 }
 
-/// Columns of `weights` over time.
+/// Chart of the `columns` of `weights` over time.
 Chart weight_chart(const std::string& title, const Eigen::VectorXd& times,
                    const Eigen::MatrixXd& weights, const std::vector<int>& columns,
                    const std::vector<std::string>& names) {
@@ -51,7 +51,7 @@ Chart weight_chart(const std::string& title, const Eigen::VectorXd& times,
   return chart;
 }
 
-/// The columns with most energy over time, at most kMostLines.
+/// Columns with the largest energy over time, at most kMostLines.
 std::vector<int> strongest_columns(const Eigen::MatrixXd& weights) {
   const Eigen::VectorXd energy = weights.colwise().squaredNorm();
   std::vector<int> columns(static_cast<std::size_t>(weights.cols()));
@@ -61,7 +61,7 @@ std::vector<int> strongest_columns(const Eigen::MatrixXd& weights) {
   return columns;
 }
 
-/// The middle frame of each of `count` equal parts: a performance mostly starts and ends at rest.
+/// Middle frame of each of `count` equal parts, because performances mostly start and end at rest.
 std::vector<int> middle_frames(int frames, int count) {
   const int kept = std::min(frames, count);
   std::vector<int> middles;
@@ -92,7 +92,7 @@ Sheet report_strip(const ReportStudy& study, const ReportView& view, int columns
     const ReportedTransfer& transfer = *study.transfer;
     add(transfer.full, StripColor::none, "target by all triangles: " + transfer.target);
     add(transfer.by_regions, StripColor::none, "target by these regions only");
-    // The row above it is the one by regions.
+    // The row above is the transfer by regions.
     add(transfer.full, StripColor::difference, "distance between the two");
   } else {
     add(study.sequence, StripColor::displacement, "distance from the rest pose");

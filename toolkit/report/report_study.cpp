@@ -17,14 +17,14 @@ namespace mimetra {
 
 namespace {
 
-/// "take" of "shots/take/", for a headline.
+/// Returns "take" for "shots/take/", for headlines.
 std::string short_name(const std::string& name) {
   std::filesystem::path path(name);
   if (!path.has_filename()) path = path.parent_path();
   return path.filename().string();
 }
 
-/// The run's call, with its sequence under the name that transfer gives it.
+/// Call of the run, with its sequence under the name that `transfer` uses.
 Invocation call_of(const RunRead& run, std::vector<std::string>& notes, const Context& context) {
   Invocation call = run.invocation;
   if (!call.inputs.contains("source")) call.inputs["source"] = call.inputs.at("sequence");
@@ -36,8 +36,8 @@ Invocation call_of(const RunRead& run, std::vector<std::string>& notes, const Co
   return call;
 }
 
-/// The target whose result `run` names; the first where it names all of them. Of several targets
-/// each has a folder of its name, or a file NAME-TARGET.EXT.
+/// Target whose result `run` contains, or the first if it contains all. If there are several
+/// targets, each has a folder of its name or a file NAME-TARGET.EXT.
 const NamedData& target_of(const Invocation& call, const NamedData& run, const Log& log) {
   const std::vector<NamedData>& targets = call.inputs.at("target");
   const std::filesystem::path manifest =
@@ -56,7 +56,7 @@ const NamedData& target_of(const Invocation& call, const NamedData& run, const L
   return targets.front();
 }
 
-/// Does the steps of a run as it did them. Contexts are parts of the call's.
+/// Repeats the steps of a run. Contexts are parts of the call's context.
 class RunSteps {
  public:
   RunSteps(const Invocation& call, const Context& context)
@@ -66,7 +66,7 @@ class RunSteps {
         source_(source_of(call, targets_, context)) {}
 
   const Source& source() const { return source_; }
-  /// One of the targets of the call, on the source's triangles.
+  /// Target of the call, on the source's triangles.
   const Target& matched(const NamedData& target) const {
     return *targets_.at(&target - call_.inputs.at("target").data());
   }
@@ -78,10 +78,10 @@ class RunSteps {
     double seconds = 0;
   };
 
-  /// Whether regions are chosen for each target; they are not known without one.
+  /// Whether regions are chosen for each target; without a target they are then unknown.
   bool selects() const { return region_options().select == Selector::transfer; }
 
-  /// As the run chose them for a target, or with another number of discs at most.
+  /// Regions as the run chose them for a target, or with at most `discs` discs.
   Found regions_for(const Target& target, std::optional<int> discs, const Context& context) const {
     const Stopwatch stopwatch;
     RegionChoiceOptions options = with_most_discs(region_options(), call_.parameters);
@@ -224,7 +224,8 @@ EvaluationRow completed(EvaluationRow row, const RunSteps::Found& found, const R
   return row;
 }
 
-/// 1 where two meshes may well have one unit of length, otherwise what makes their sizes equal.
+/// Returns 1 if two meshes may have the same unit of length, otherwise the factor that makes their
+/// sizes equal.
 double shown_scale(const FrameSource& source, const FrameSource& target) {
   constexpr double kOneUnit = 3;
   const double ratio = source.diameter() / target.diameter();
@@ -237,7 +238,7 @@ void enlarge(MeshSequence& sequence, double scale) {
   sequence = sequence.with_frames(scale * sequence.positions()).with_rest(rest);
 }
 
-/// What `work` warns of is not said of the run.
+/// Drops warnings of `work`, which do not belong to the run.
 template <typename Work>
 auto apart_from(std::vector<std::string>& notes, const Work& work) {
   const std::size_t before = notes.size();
@@ -246,7 +247,7 @@ auto apart_from(std::vector<std::string>& notes, const Work& work) {
   return result;
 }
 
-/// Those of the source over the vertices of a target.
+/// Source regions carried to the vertices of a target.
 std::vector<int> regions_over(const std::vector<int>& regions, const Target& target) {
   if (!target.pairing) return regions;
   std::vector<int> over(static_cast<std::size_t>(target.pairing->target_vertices()), -1);
@@ -300,8 +301,8 @@ ReportedTransfer transferred(const RunSteps& steps, const Target& to, RunSteps::
   return transfer;
 }
 
-/// Numbers of components in the table: those asked for, and those of an evaluation that is not by
-/// a painting.
+/// Numbers of components for the table: the given ones, and those of an evaluation unless it used a
+/// painting.
 std::vector<int> all_counts(std::vector<int> counts, const Parameters& parameters) {
   if (parameters.find("k")->kind != ParameterKind::integer_list) return counts;
   if (parameters.optional_text("paint")) return counts;

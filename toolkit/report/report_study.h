@@ -10,42 +10,42 @@
 
 namespace mimetra {
 
-/// What a report shows of a transfer.
+/// Results of a transfer for a report.
 struct ReportedTransfer {
   std::string target;
-  std::vector<std::string> expressions;  ///< of the target, for a solution of weights
+  std::vector<std::string> expressions;  ///< target's expressions, if the solution has weights
   MeshSequence full;
   MeshSequence by_regions;
   std::vector<int> regions_of_vertices;  ///< strongest region over each vertex, -1 outside
-  Eigen::MatrixXd weights;               ///< of the one by regions, F x D; empty in vertex space
-  std::vector<EvaluationRow> rows;       ///< ascending in K, all triangles last
-  std::size_t main_row = 0;              ///< the run's own
-  /// How many times larger than it is the target is shown: 1, unless its unit of length seems to be
-  /// another than the source's. Both sequences are enlarged.
+  Eigen::MatrixXd weights;  ///< weights of the transfer by regions, F x D; empty in vertex space
+  std::vector<EvaluationRow> rows;  ///< ascending in K, all triangles last
+  std::size_t main_row = 0;         ///< row of the run itself
+  /// Enlargement of the target and both its sequences. It is 1 unless the target's unit of length
+  /// seems to differ from the source's.
   double shown_scale = 1;
 };
 
-/// What a report shows of a run, found by doing it again. Sequences have their neutral as rest pose
-/// and no head motion.
+/// Results of a run for a report, computed by repeating the run. Rest poses are the neutral, and
+/// head motion is removed.
 struct ReportStudy {
   RunRecord run;
   std::string source;
   MeshSequence sequence;
-  bool moved_head = false;  ///< head motion was taken out
+  bool moved_head = false;  ///< whether head motion was removed
   Regions regions;
-  std::optional<Components> components;  ///< none for regions that were given
+  std::optional<Components> components;  ///< none for given regions
   std::optional<ReportedTransfer> transfer;
-  std::vector<std::string> notes;  ///< what the run warned of
+  std::vector<std::string> notes;  ///< warnings of the run
 };
 
-/// The strongest region of each vertex of the source (N), -1 outside.
+/// Strongest region of each vertex of the source (N), -1 outside.
 std::vector<int> strongest_regions(const Regions& regions);
 
-/// K of a run that looked for regions; of several the largest.
+/// Number of components K of a run that looked for regions; the largest of several.
 int main_count(const Parameters& parameters);
 
-/// `counts`: numbers of components that the table has besides the run's own; those above what the
-/// mesh can have are left out. Throws what the run's operation throws.
+/// Repeats a run. `counts` are further numbers of components for the table; counts that the mesh
+/// cannot have are left out. Throws as the run's operation.
 ReportStudy study(const NamedData& run, const std::vector<int>& counts, const Log& log = {},
                   const Context& context = {});
 

@@ -33,7 +33,7 @@ std::string base64(std::string_view bytes) {
 
 namespace {
 
-/// What poses are coded in: steps from a centre.
+/// Grid of coded poses: steps from a centre.
 struct Grid {
   Eigen::RowVector3d center;
   double step = 1;
@@ -51,19 +51,19 @@ Grid grid_of(const MeshSequence& sequence, const std::vector<int>& frames) {
   return grid;
 }
 
-/// A pose in steps (1 x 3N).
+/// Pose in steps (1 x 3N).
 Eigen::RowVectorXd in_steps(const PositionsView& pose, const Grid& grid) {
   const Positions steps = (pose.rowwise() - grid.center) / grid.step;
   return steps.reshaped<Eigen::RowMajor>().transpose();
 }
 
-/// \pre `numbers` are at most 32767
+/// Rounds numbers. \pre `numbers` are at most 32767
 StepMatrix rounded(const Eigen::Ref<const Frames>& numbers) {
   return numbers.unaryExpr(
       [](double number) { return static_cast<std::int16_t>(std::lround(number)); });
 }
 
-/// How the frames lie from the rest pose, in steps.
+/// Displacements of the frames from the rest pose, in steps.
 class Displacements : public BlockSource<double> {
  public:
   Displacements(const MeshSequence& sequence, const std::vector<int>& frames, double step,
@@ -92,7 +92,7 @@ class Displacements : public BlockSource<double> {
   double step_;
 };
 
-/// Where the mixtures are off by more than a step.
+/// Corrections of coordinates that the mixtures miss by more than a step.
 std::vector<MixedPoses::Correction> corrections_of(const MixedPoses& mixed,
                                                    const MeshSequence& sequence,
                                                    const std::vector<int>& frames) {
@@ -138,13 +138,13 @@ std::optional<MixedPoses> mixed(const MeshSequence& sequence, const std::vector<
   const double numbers = static_cast<double>(frames.size()) * 3 * sequence.vertices();
   const double tolerance = norm2 > 0 ? kOffByBasis * std::sqrt(numbers / norm2) : 1;
   if (tolerance < kLeastBasisTolerance) return std::nullopt;
-  // A sketch that finds few poses has more of them.
+  // A sketch needs more poses than the basis that it finds.
   const Eigen::Index sketched = std::max<Eigen::Index>(64, 2 * most);
   const auto found =
       time_basis(X, norm2, std::min(1.0, tolerance), sketched, context.without_ranks());
   if (!found || found->B.rows() > most) return std::nullopt;
 
-  // The largest weight of each pose becomes 1.
+  // Scale each pose so that its largest weight is 1.
   const Eigen::RowVectorXd largest =
       found->Q.cwiseAbs().colwise().maxCoeff().cwiseMax(std::numeric_limits<double>::min());
   const Frames weights = found->Q.array().rowwise() / largest.array();
@@ -152,7 +152,7 @@ std::optional<MixedPoses> mixed(const MeshSequence& sequence, const std::vector<
   MixedPoses result{grid.center, grid.step, {}, {}, {}, {}, {}};
   const PositionsView rest(sequence.rest().data(), sequence.vertices(), 3);
   result.rest = rounded(MixedPoses::kStepsOfRest * in_steps(rest, grid));
-  // Rounding errs by a step's share of 1 / sqrt(12), in each of the poses.
+  // Rounding has an error of 1 / sqrt(12) of a step in each of the poses.
   result.basis_step = std::max(kOffByRounding * std::sqrt(12 / static_cast<double>(basis.rows())),
                                basis.cwiseAbs().maxCoeff() / MixedPoses::kWeightOfOne);
   result.basis = rounded(basis / result.basis_step);
@@ -163,11 +163,11 @@ std::optional<MixedPoses> mixed(const MeshSequence& sequence, const std::vector<
 
 namespace {
 
-/// Between frames the viewer interpolates: more of them are not seen.
+/// The viewer interpolates between frames, so more frames would not be visible.
 constexpr double kMostFramesPerSecond = 30;
 constexpr int kEvenColors = 64;
 
-/// zlib's format as base64.
+/// Compresses bytes in zlib's format, as base64.
 std::string compressed(const std::vector<unsigned char>& bytes) {
   vtkNew<vtkZLibDataCompressor> compressor;
   std::vector<unsigned char> packed(compressor->GetMaximumCompressionSpace(bytes.size()));
@@ -177,8 +177,8 @@ std::string compressed(const std::vector<unsigned char>& bytes) {
 
 enum class Rows { as_they_are, as_differences };
 
-/// Low bytes of a row before its high ones; of differences, each from the row before, what hardly
-/// moves becomes long runs of zeros.
+/// Packs the low bytes of each row before the high bytes. Differences from the row before turn
+/// nearly still coordinates into long runs of zeros.
 std::string packed_rows(const StepMatrix& rows, Rows kind) {
   const auto width = static_cast<std::size_t>(rows.cols());
   std::vector<unsigned char> bytes(2 * width * static_cast<std::size_t>(rows.rows()));
@@ -196,7 +196,7 @@ std::string packed_rows(const StepMatrix& rows, Rows kind) {
   return compressed(bytes);
 }
 
-/// 32-bit differences from the number before, low bytes first.
+/// Packs 32-bit differences from the number before, low bytes first.
 std::string packed_indices(const std::vector<int>& indices) {
   std::vector<unsigned char> bytes;
   bytes.reserve(4 * indices.size());
@@ -227,7 +227,7 @@ Json json_of(const Eigen::Vector3d& vector) {
   return {vector.x(), vector.y(), vector.z()};
 }
 
-/// The colour that the still pictures give each region.
+/// Colour of each region, as in the still pictures.
 Json region_colors(const ViewerMesh& mesh) {
   const int last = mesh.regions.empty() ? -1 : *std::ranges::max_element(mesh.regions);
   Json colors = Json::array();
@@ -243,7 +243,7 @@ bool have_one_surface(const ViewerMesh& a, const ViewerMesh& b) {
   return of_a.rows() == of_b.rows() && of_a == of_b && a.regions == b.regions;
 }
 
-/// The number of each mesh's surface: one for all that have the same triangles and regions.
+/// Index of each mesh's surface. Meshes with the same triangles and regions share one.
 std::vector<std::size_t> surface_of_each(const std::vector<ViewerMesh>& meshes) {
   std::vector<std::size_t> first_of, surface;
   for (std::size_t i = 0; i < meshes.size(); ++i) {
@@ -255,7 +255,7 @@ std::vector<std::size_t> surface_of_each(const std::vector<ViewerMesh>& meshes) 
   return surface;
 }
 
-/// Their faces, the lowest vertex at each vertex's place, and regions.
+/// Faces, welded vertices and regions of each surface.
 Json json_of_surfaces(const std::vector<ViewerMesh>& meshes) {
   Json surfaces = Json::array();
   const std::vector<std::size_t> surface = surface_of_each(meshes);
@@ -281,8 +281,8 @@ double largest_displacement(const ViewerScene& scene) {
   return largest;
 }
 
-/// From where the scene is seen first, the half width and height that show all of it, and how far
-/// from its middle the farthest vertex lies.
+/// Initial view of the scene: direction, half width and half height that show everything, and the
+/// distance of the farthest vertex from its mesh's middle.
 Json view_of_scene(const ViewerScene& scene) {
   constexpr double kSpaceAround = 1.05;
   const View view = view_of(scene.viewpoint);
@@ -306,7 +306,7 @@ Json view_of_scene(const ViewerScene& scene) {
           {"reach", reach}};
 }
 
-/// All of a scene but its frames.
+/// The scene without its frames.
 Json still_part(const ViewerScene& scene) {
   Json even = Json::array();
   for (int i = 0; i < kEvenColors; ++i) {
@@ -320,7 +320,7 @@ Json still_part(const ViewerScene& scene) {
           {"view", view_of_scene(scene)}};
 }
 
-/// JSON that may stand in a script element.
+/// JSON text that is safe inside a script element.
 std::string script_text(const Json& json) {
   std::string text = json_text(json);
   for (std::size_t i = 0; (i = text.find('<', i)) != std::string::npos;) {
@@ -329,7 +329,7 @@ std::string script_text(const Json& json) {
   return text;
 }
 
-/// A mesh's frames, in either of two codings.
+/// Packs a mesh's frames in one of two codings.
 using PackPoses = std::function<Json(const MeshSequence& sequence)>;
 
 Json json_of_poses(const QuantizedPoses& poses) {
@@ -354,7 +354,7 @@ Json json_of_poses(const MixedPoses& mixed) {
           {"corrections", packed_indices(steps)}};
 }
 
-/// All of a scene; empty where a mesh's poses are null.
+/// The whole scene; empty if the poses of any mesh are null.
 std::string with_frames(Json json, const ViewerScene& scene, const std::vector<int>& frames,
                         const PackPoses& pack, const Context& context) {
   Json times = Json::array();
@@ -380,7 +380,7 @@ std::string with_frames(Json json, const ViewerScene& scene, const std::vector<i
   return script_text(json);
 }
 
-/// Whole frames that may be seen.
+/// Number of whole frames that can be seen.
 int seen_frames(const ViewerScene& scene) {
   const MeshSequence& first = scene.meshes.front().sequence;
   const double seconds = first.times()[first.frames() - 1] - first.times()[0];
@@ -388,18 +388,18 @@ int seen_frames(const ViewerScene& scene) {
   return std::max(std::min(2, first.frames()), static_cast<int>(most));
 }
 
-/// The bytes of all meshes' coordinates in one pose.
+/// Bytes of the coordinates of all meshes in one pose.
 double pose_bytes(const ViewerScene& scene) {
   double bytes = 0;
   for (const ViewerMesh& mesh : scene.meshes) bytes += 6.0 * mesh.sequence.vertices();
   return bytes;
 }
 
-/// All frames, as mixtures of few poses; empty where these do not give them, or are too many for
+/// All frames as mixtures of a few poses; empty if no such mixtures exist or they need more than
 /// `bytes`.
 std::string with_mixed_frames(const Json& still, const ViewerScene& scene, std::size_t bytes,
                               const Context& context) {
-  // zlib and base64 leave hardly less of poses that nothing follows from.
+  // zlib and base64 leave at least about half of poses without a pattern.
   constexpr double kLeastShare = 0.5;
   const auto most =
       static_cast<Eigen::Index>(static_cast<double>(bytes) / (kLeastShare * pose_bytes(scene)));
@@ -427,12 +427,12 @@ std::vector<int> thinned(int frames, int count) {
 }
 
 PackedScene packed(const ViewerScene& scene, std::size_t bytes, const Context& context) {
-  // zlib makes poses hardly ever this much smaller.
+  // zlib hardly ever compresses poses more than this.
   constexpr double kBestCompression = 40;
   constexpr double kSafety = 0.97;
   const Json still = still_part(scene);
   const int frames = scene.meshes.front().sequence.frames();
-  // Nobody knows how many attempts it takes.
+  // The number of attempts is unknown, so they report no progress.
   const Context attempt = context.part(0, 0);
   std::string mixed = with_mixed_frames(still, scene, bytes, attempt);
   if (!mixed.empty() && mixed.size() <= bytes) return {std::move(mixed), frames};

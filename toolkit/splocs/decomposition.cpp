@@ -19,11 +19,11 @@
 namespace mimetra {
 namespace {
 
-// The start takes about as long as so many iterations: for the caller's progress.
+// The start takes about as long as this number of iterations. Used for progress.
 constexpr double kStartIterations = 5;
 
-// Changes of the energy that must be small in a row. One alone is no convergence: on a face with
-// K = 40 it came at iteration 65, and the energy fell on when support maps moved.
+// Small changes of the energy in a row that mean convergence. One alone is not enough: on a face
+// with K = 40 it came at iteration 65, and the energy fell again when support maps moved.
 constexpr int kSmallChanges = 3;
 
 void require(bool condition, const std::string& message) {
@@ -54,11 +54,11 @@ void require_valid(const PartWeights& parts, int vertices) {
           "parts: weights must be from 0 to 1");
 }
 
-/// What each rank was given: one column a rank.
+/// Sizes given to each rank: one column per rank.
 enum GivenRow { kVertices, kFrames, kCoordinates, kFiniteRest, kGivenRows };
 
-/// On all ranks. Each is asked in turn, since they cannot join anything before they agree on the
-/// number of vertices, and some may own none.
+/// Collects the sizes of all ranks, on all ranks. Each rank is asked in turn, because they cannot
+/// join anything before they agree on the number of vertices, and some may own none.
 Eigen::MatrixXd given_to_ranks(const SequencePart& sequence, const Reduction& reduction) {
   Eigen::MatrixXd given(kGivenRows, reduction.part().ranks());
   for (int rank = 0; rank < reduction.part().ranks(); ++rank) {
@@ -71,7 +71,7 @@ Eigen::MatrixXd given_to_ranks(const SequencePart& sequence, const Reduction& re
   return given;
 }
 
-/// Throws the same on all ranks, whichever of them was given what is wrong.
+/// Throws the same error on all ranks, whichever rank received the wrong input.
 void require_decomposable(const SequencePart& sequence, int count, const Reduction& reduction) {
   const auto given = given_to_ranks(sequence, reduction).cast<Eigen::Index>().eval();
   const Eigen::Index vertices = given(kVertices, 0), frames = given(kFrames, 0);
@@ -101,7 +101,7 @@ void require_decomposable(const SequencePart& sequence, int count, const Reducti
 }
 
 /// ||X - W C||^2 + penalty without the residual, from P = X C^T (F x K), H = C C^T and W^T W. The
-/// terms cancel down to the data's own rounding, 1e-16 of ||X||^2, which an exact fit leaves with
+/// terms cancel down to the rounding of the data, 1e-16 of ||X||^2. An exact fit leaves that with
 /// either sign.
 double energy(double X_norm2, const Eigen::MatrixXd& W, const Eigen::MatrixXd& gram,
               const Eigen::MatrixXd& P, const Eigen::MatrixXd& H, double penalty) {
@@ -119,7 +119,7 @@ bool has_converged(const std::vector<double>& energies, double tolerance) {
   return true;
 }
 
-/// Place of the least energy, the first of those that tie.
+/// Index of the least energy; ties go to the first.
 int best_of(const std::vector<double>& energies) {
   int best = 0;
   for (int i = 1; i < static_cast<int>(energies.size()); ++i) {
@@ -128,7 +128,7 @@ int best_of(const std::vector<double>& energies) {
   return best;
 }
 
-/// What is returned of an iteration.
+/// Result of an iteration.
 template <typename Scalar>
 struct Iterate {
   Eigen::MatrixXd W;  ///< on the first rank
@@ -136,9 +136,9 @@ struct Iterate {
   Frames maps;
 };
 
-/// Alternates between weights and components; fills displacements, weights and support of the
-/// iterate that the options want, energies and what they say. `X` are the motion's frames, or their
-/// coordinates in `basis` where there is one. The first rank alone computes weights.
+/// Alternates between weights and components. Fills in displacements, weights and support of the
+/// returned iterate, the energies and the convergence. `X` is the motion's frames, or their
+/// coordinates in `basis` if there is one. Only the first rank computes weights.
 template <typename Scalar>
 void alternate(Components& result, double X_norm2, const BlockSource<Scalar>& X,
                const std::optional<TimeBasis>& basis, Start start, SupportMaps support,
@@ -157,10 +157,10 @@ void alternate(Components& result, double X_norm2, const BlockSource<Scalar>& X,
   Iterate<Scalar> best;
   for (int iteration = 0; iteration < *options.iterations; ++iteration) {
     context.report(static_cast<double>(iteration) / *options.iterations);
-    // What the best so far is, the next iteration overwrites.
+    // Save the best iterate so far before the next iteration overwrites it.
     if (options.returned == ReturnedIterate::best && iteration > 0 &&
         best_of(energies) == iteration - 1) {
-      // One by one, into the memory of the last copy.
+      // Assign one by one, to reuse the memory of the last copy.
       best.W = W;
       best.C = components.C;
       best.maps = support.maps();
@@ -192,7 +192,7 @@ void alternate(Components& result, double X_norm2, const BlockSource<Scalar>& X,
   result.support = std::move(best.maps);
 }
 
-/// The same motion in single precision; each block is released once it is taken over.
+/// Motion in single precision; each block is released once it is converted.
 std::unique_ptr<BlockSource<float>> in_single_precision(KeptBlocks<double>& X, MotionPlace place) {
   auto result = kept_blocks<float>(place, X.rows(), X.part());
   for (int b = 0; b < X.count(); ++b) {
@@ -202,18 +202,18 @@ std::unique_ptr<BlockSource<float>> in_single_precision(KeptBlocks<double>& X, M
   return result;
 }
 
-/// The first rank's, so that all look for the same basis.
+/// Number of poses that the first rank planned, so that all ranks search the same basis.
 Eigen::Index poses_for_all(const DecompositionPlan& plan, const Reduction& reduction) {
   const Eigen::MatrixXd poses = reduction.everywhere(
       Eigen::MatrixXd(Eigen::MatrixXd::Constant(1, 1, static_cast<double>(plan.poses))));
   return static_cast<Eigen::Index>(poses(0));
 }
 
-/// The motion in the precision and the basis that the options want, from the start on.
+/// Runs the iterations from `start` in the precision and the basis of the options.
 void iterate(Components& result, Motion motion, Start start, SupportMaps support,
              const DecompositionPlan& plan, const Context& context) {
   const DecompositionOptions& options = result.options;
-  // Of the progress.
+  // Share of the progress.
   const double basis_share = options.basis_tolerance > 0 ? 0.3 : 0;
   std::optional<TimeBasis> basis;
   if (options.basis_tolerance > 0) {
@@ -232,7 +232,7 @@ void iterate(Components& result, Motion motion, Start start, SupportMaps support
   const Context of_iterations = context.part(basis_share, 1);
   MotionPlace place = plan.place;
   if (basis) {
-    // What is not needed any more is released: it is the largest array there is.
+    // Release the motion, the largest array of all.
     auto B = std::make_unique<VertexBlocks<double>>(std::move(basis->B));
     motion.kept = B.get();
     motion.X = std::move(B);
@@ -248,8 +248,8 @@ void iterate(Components& result, Motion motion, Start start, SupportMaps support
   }
 }
 
-/// Finds each component's centre. A component needs both weights and displacements: with one of
-/// them zero it tells nothing, and both are cleared.
+/// Finds each component's centre. A component needs both weights and displacements: if one is zero,
+/// both are cleared.
 void finish(Components& result, const Reduction& reduction) {
   const VertexPart& part = reduction.part();
   const Eigen::VectorXd weights = result.options.parts.of_vertices();
@@ -271,7 +271,7 @@ void finish(Components& result, const Reduction& reduction) {
   result.displacements *= result.scale;
 }
 
-/// Distances are dealt out to the ranks by vertex, so that each is computed once and kept there.
+/// Distributes sources to the ranks by vertex, so that each rank computes and keeps its own.
 DistanceFunction dealt(DistanceFunction distances, const Reduction& reduction) {
   return [distances = std::move(distances), &reduction](std::span<const VertexIndex> sources) {
     const int ranks = reduction.part().ranks();
@@ -291,7 +291,7 @@ DistanceFunction dealt(DistanceFunction distances, const Reduction& reduction) {
   };
 }
 
-/// Columns of all ranks side by side, on each: every vertex has `width`.
+/// Columns of all ranks side by side, on all ranks. Every vertex has `width` columns.
 Eigen::MatrixXd gathered(const Eigen::MatrixXd& own, int width, const Reduction& reduction) {
   const VertexPart& part = reduction.part();
   Eigen::MatrixXd all(own.rows(), width * part.mesh_vertices());

@@ -27,7 +27,7 @@ void require_same_size(const SequencePart& sequence, const Components& component
   }
 }
 
-/// Frames of a block whose residual is held at once.
+/// Frames whose residual is held at once.
 constexpr Eigen::Index kErrorRows = 512;
 
 /// Sums over vertices.
@@ -37,7 +37,7 @@ struct ErrorSums {
   double zeros = 0;       ///< displacements in C that are exactly zero
 };
 
-/// Components in the vertices of a block, as its rows lie (K x 3m).
+/// Components at the vertices of block b, in the layout of X's blocks (K x 3m).
 VertexBlocks<double>::Block block_of(const Frames& C, const BlockSource<double>& X, int b) {
   VertexBlocks<double>::Block block(C.rows(), 3 * X.size(b));
   for (Eigen::Index k = 0; k < C.rows(); ++k) {
@@ -47,7 +47,8 @@ VertexBlocks<double>::Block block_of(const Frames& C, const BlockSource<double>&
   return block;
 }
 
-/// The residual itself, block by block: here it matters also where it is rounding.
+/// Sums the residual itself, block by block, because its value matters even when it is only
+/// rounding.
 ErrorSums error_sums(const BlockSource<double>& X, const Components& components,
                      const Reduction& reduction) {
   const auto add_block = [&](int b, Eigen::MatrixXd& sums) {
@@ -75,7 +76,7 @@ ErrorSums error_sums(const BlockSource<double>& X, const Components& components,
   return {sums[0], sums[1], sums[2]};
 }
 
-/// Each block is needed once: it is read from the sequence where that is no waste.
+/// Motion for one pass: read from the sequence if it can read single vertices, otherwise kept.
 std::unique_ptr<BlockSource<double>> motion_of(const SequencePart& sequence,
                                                const Components& components,
                                                const Reduction& reduction, MotionPlace place) {
@@ -86,15 +87,15 @@ std::unique_ptr<BlockSource<double>> motion_of(const SequencePart& sequence,
   return kept_displacements(part, reduction.part(), place, reduction.context());
 }
 
-/// Distance within which `share` of the energy lies (both N); +infinity where the reachable
-/// vertices do not hold it.
+/// Distance within which `share` of the energy lies (both N); +infinity if the vertices that can be
+/// reached contain less.
 double radius_holding(double share, const Eigen::VectorXd& energies,
                       const Eigen::VectorXd& distances) {
   std::vector<int> order(energies.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](int a, int b) { return distances[a] < distances[b]; });
-  // The same sum in the same order below, so that a share of 1 is reached exactly.
+  // Add in the same order as below, so that a share of 1 is reached exactly.
   double total = 0;
   for (const int v : order) total += energies[v];
   double held = 0;
@@ -142,7 +143,7 @@ DecompositionError decomposition_error(const SequencePart& sequence, const Compo
   DecompositionError error;
   error.rms = residual / coordinates;
   error.relative_rms = diagonal > 0 ? error.rms / diagonal : 0;
-  // Frames that are all the same vary by rounding.
+  // If all frames are the same, their variation is only rounding.
   constexpr double kRounding = 1e-12;
   const bool varies = variation > kRounding * coordinates * diagonal;
   error.kg = varies ? 100 * residual / variation : 0;

@@ -13,34 +13,33 @@ namespace {
 
 constexpr double kNumber = sizeof(double);
 
-/// Components have so many different centres on their way, whose distances are kept as far as
-/// SurfaceDistances does: measured with K = 40.
+/// Different centres that a component has over the iterations, measured with K = 40. Their
+/// distances are kept as far as SurfaceDistances does.
 constexpr double kCentersPerComponent = 8;
 
-/// A thread holds the block that it reads; measured, the C library keeps as much of what was freed.
+/// A thread holds the block that it reads; in measurements the C library kept as much freed memory.
 constexpr double kBlocksPerThread = 2;
 
-/// Sums of a run that a thread holds (P, H and penalties): in the precision of the loop, in double,
-/// and what they are joined with.
+/// Copies of a run's sums (P, H and penalties) that a thread holds: in the loop's precision, in
+/// double, and joined with another run.
 constexpr double kSumsPerThread = 3;
 
-/// Levels of the tree along which 64 runs are joined: each may hold one matrix.
+/// Levels of the tree that joins 64 runs; each may hold one matrix.
 constexpr double kLevels = 6;
 
-/// Matrices of frames x components: weights, the best so far, those in a basis, P twice, and what a
-/// step makes of them.
+/// Matrices of frames x components: weights, the best iterate, their coordinates in a basis, P
+/// twice, and temporaries of a step.
 constexpr double kWeightMatrices = 6;
 
-/// Poses that a basis of a face's motion may have; where the memory left holds fewer besides the
-/// motion, that is kept elsewhere.
+/// Poses that a basis of a face's motion may have. If less memory is left beside the motion, the
+/// motion is kept elsewhere.
 constexpr double kPosesBesideMotion = 256;
 
-/// Matrices of frames x poses while the sketch of a basis is made orthonormal.
+/// Matrices of frames x poses during the orthonormalisation of a sketch.
 constexpr double kOrthonormalized = 4;
 
-/// Working on the motion read once more from a sequence, and writing it into a file and scaling it
-/// there, in times of working on it read from that file: measured on 20 000 frames of 6706
-/// vertices.
+/// Costs relative to a pass over the motion in a file: a pass that reads the sequence again, and
+/// writing and scaling the file once. Measured on 20 000 frames of 6706 vertices.
 constexpr double kReadAgain = 1.8, kWriteOnce = 6.5;
 
 struct Sizes {
@@ -51,32 +50,32 @@ struct Sizes {
     return kNumber * frames * 3 * std::min<double>(VertexPart::kBlock, vertices);
   }
   double sums() const { return kNumber * (frames + count + 1) * count; }
-  /// What does not depend on the number of threads.
+  /// Bytes that do not depend on the number of threads.
   double fixed() const {
-    // C, the best so far, the dual variable, and what is returned.
+    // C, the best iterate, the dual variable, and the result.
     const double components = 4 * count * 3 * vertices;
-    // Of all vertices while they are made of distances.
+    // The rank's maps, and maps of the whole mesh while they are computed from distances.
     const double maps = 2 * count * vertices + 2 * count * mesh_vertices;
     const double distances = std::min(kNumber * kCentersPerComponent * count * mesh_vertices,
                                       double{SurfaceDistances::kKeptBytes});
-    // Memory of the last block, which is smaller, serves no other.
+    // The last block is smaller than the others and cannot reuse their memory.
     return kFactorsPerVertex * mesh_vertices +
            kNumber * (components + maps + kWeightMatrices * frames * count) + distances +
            kLevels * sums() + block();
   }
-  /// Each pose that a basis in time is looked for among: of the sketch, its sums on each thread and
-  /// level of the tree, and random signs of a block; then two bases, and the motion in both.
+  /// Bytes for each pose of a basis search. They cover the sketch, its sums on each thread and tree
+  /// level, and random signs of a block. Afterwards they cover two bases and the motion in both.
   double of_pose(int threads) const {
     const double signs = 3 * std::min<double>(VertexPart::kBlock, vertices);
     const double sketch = (threads + kLevels + kOrthonormalized) * frames + threads * signs;
-    // The directions, too, are no more than half the frames.
+    // A basis also has at most half as many directions as frames.
     return kNumber * std::max(sketch, 3 * frames + 6 * vertices);
   }
   double per_thread() const { return kBlocksPerThread * block() + kSumsPerThread * sums(); }
 };
 
-/// Passes over the motion: energies, one for each component of the start, the first products, and
-/// one for each iteration.
+/// Passes over the motion: energies, each component of the start, the first products, and each
+/// iteration.
 double passes(const DecompositionOptions& options) {
   const int iterations = options.iterations.value_or(DecompositionOptions::kUsualIterations);
   return 2 + options.count + (options.basis_tolerance > 0 ? 4 : iterations);
@@ -92,7 +91,7 @@ bool disk_has_room(double bytes) {
 
 MotionPlace place_outside_memory(const FrameSource& frames, double bytes,
                                  const DecompositionOptions& options) {
-  // In single precision the motion is rounded once.
+  // Single precision rounds the motion once, so it must be kept.
   if (!frames.reads_vertices() || options.precision == IterationPrecision::single_precision) {
     return MotionPlace::scratch;
   }
@@ -100,7 +99,7 @@ MotionPlace place_outside_memory(const FrameSource& frames, double bytes,
   return again < kept || !disk_has_room(bytes) ? MotionPlace::sequence : MotionPlace::scratch;
 }
 
-/// Rounded up, so that what is asked for is enough.
+/// Rounds up, so that the requested memory is enough.
 std::string megabytes(double bytes) {
   return fixed(std::ceil(bytes / 1e6), 0) + " MB";
 }
@@ -116,7 +115,7 @@ DecompositionPlan planned_decomposition(const FrameSource& frames, const VertexP
   const std::optional<double> memory = context.memory();
   const bool wants_basis = options.basis_tolerance > 0;
   const double worth = wants_basis ? frames.frames() / 2 : 0;
-  // As many poses as are worth it and fit.
+  // Search among as many poses as are useful and fit.
   const auto with_poses = [&](DecompositionPlan plan, int working) {
     const double of_pose = sizes.of_pose(working);
     const double fitting = memory ? std::max(0.0, (*memory - plan.bytes) / of_pose) : worth;

@@ -27,7 +27,7 @@ auto numbers_of(Block& block) {
   return std::span(block.data(), static_cast<std::size_t>(block.size()));
 }
 
-/// Of vertices `first` .. first + m - 1 of poses (R x 3n), from the same of the rest pose.
+/// Displacements of vertices `first` .. first + m - 1 of `poses` (R x 3n) from `rest` (m x 3).
 VertexBlocks<double>::Block displaced(const Eigen::Map<const Frames>& poses, Eigen::Index first,
                                       const Eigen::Ref<const Positions>& rest) {
   VertexBlocks<double>::Block rows(poses.rows(), rest.size());
@@ -38,14 +38,14 @@ VertexBlocks<double>::Block displaced(const Eigen::Map<const Frames>& poses, Eig
   return rows;
 }
 
-/// Memory of blocks that are read, for the next ones of the same shape: what is larger than 32 MB
-/// the C library would ask of the system each time, which clears it page by page.
+/// Reuses the memory of blocks for later blocks of the same shape. Otherwise the C library requests
+/// blocks above 32 MB from the system each time, which clears them page by page.
 template <typename Scalar>
 class BlockPool {
  public:
   using Block = typename BlockSource<Scalar>::Block;
 
-  /// Numbers of any value. From several threads.
+  /// Block with arbitrary values. Safe to call from several threads.
   std::shared_ptr<Block> block(Eigen::Index rows, Eigen::Index columns) const {
     std::unique_ptr<Block> block;
     {
@@ -54,7 +54,7 @@ class BlockPool {
         return unused->rows() == rows && unused->cols() == columns;
       });
       if (found == unused_->blocks.end()) {
-        // Room for its return, which must not fail.
+        // Reserve room for its return, which must not fail.
         unused_->blocks.reserve(++unused_->made);
       } else {
         block = std::move(*found);
@@ -78,7 +78,7 @@ class BlockPool {
   std::shared_ptr<Unused> unused_ = std::make_shared<Unused>();
 };
 
-/// Blocks in a ScratchFile, one after the other, each row after row.
+/// Blocks in a ScratchFile, one after the other, each in row order.
 template <typename Scalar>
 class ScratchBlocks : public KeptBlocks<Scalar> {
  public:
@@ -115,7 +115,7 @@ class ScratchBlocks : public KeptBlocks<Scalar> {
   BlockPool<Scalar> pool_;
 };
 
-/// Displacements that are read anew for each use.
+/// Displacements that are read again for each use.
 class SequenceBlocks : public BlockSource<double> {
  public:
   SequenceBlocks(const SequencePart& sequence, const VertexPart& part, double scale)
@@ -182,17 +182,18 @@ std::unique_ptr<KeptBlocks<double>> kept_displacements(const SequencePart& seque
 
 namespace {
 
-/// Of a frame's displacement coordinates, in some vertices: one column each.
+/// Spread of a frame's displacement coordinates over some vertices: one column each.
 enum SpreadColumn {
   kMean,
   kSquares,   ///< sum of squared differences from the mean
   kFurthest,  ///< length of the longest displacement
-  kCount,     ///< how many coordinates
-  kInfinite,  ///< 1 where a coordinate is not a finite number, else 0
+  kCount,     ///< number of coordinates
+  kInfinite,  ///< 1 if a coordinate is not a finite number, otherwise 0
   kSpreadColumns
 };
 
-/// The sum of squares of two sets about their common mean follows from both without cancellation.
+/// Joins the spreads of two sets: the sum of squares about their common mean follows from both
+/// without cancellation.
 ///
 /// [Chan, Golub, LeVeque. Updating Formulae and a Pairwise Algorithm for Computing Sample
 /// Variances. COMPSTAT 1982]
@@ -208,7 +209,7 @@ void join_spreads(Eigen::MatrixXd& left, const Eigen::MatrixXd& right) {
   left.col(kInfinite) = left.col(kInfinite).cwiseMax(right.col(kInfinite));
 }
 
-/// Of the displacements of a block (F x 3m).
+/// Spread of each frame over the vertices of a block (F x 3m).
 Eigen::MatrixXd spreads_of(const VertexBlocks<double>::Block& displacements) {
   Eigen::MatrixXd spreads(displacements.rows(), kSpreadColumns);
   for (Eigen::Index f = 0; f < displacements.rows(); ++f) {
@@ -225,7 +226,7 @@ Eigen::MatrixXd spreads_of(const VertexBlocks<double>::Block& displacements) {
   return spreads;
 }
 
-/// The spread of each frame over the mesh (F x kSpreadColumns), on all ranks.
+/// Spread of each frame over the mesh (F x kSpreadColumns), on all ranks.
 Eigen::MatrixXd spreads_of(const BlockSource<double>& X, const Reduction& reduction) {
   const auto of_run = [&](int run, Eigen::MatrixXd& spreads) {
     const IndexRange blocks = reduction.part().blocks_of(run);
@@ -263,7 +264,7 @@ void require_motion(const Positions& rest, const Eigen::MatrixXd& spreads) {
                       ": give frames that deform (head motion that is taken out is none)");
 }
 
-/// Of displacement coordinates with this mean and variance.
+/// Scale of displacement coordinates with this mean and variance.
 double scale_of(MotionScale unit, double mean, double variance) {
   switch (unit) {
     case MotionScale::root_mean_square:

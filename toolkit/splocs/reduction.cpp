@@ -52,21 +52,21 @@ std::shared_ptr<const FrameSource> own_vertices(const FrameSource& sequence,
 
 namespace {
 
-// Values among which argmax() looks with all threads: for fewer, starting these takes longer.
+// Values from which argmax() uses all threads; for fewer, starting threads takes longer.
 constexpr Eigen::Index kWorthThreads = Eigen::Index{1} << 20;
 
-/// Values of a run's vertices in one row, each larger than all before it: the first vertex with at
-/// least some value is always one of them. Those too small to tie with the largest are left out.
+/// Values of a run's vertices in one row, each larger than all before it. The first vertex with at
+/// least a given value is always one of them. Values too small to tie with the largest are dropped.
 class Records {
  public:
-  /// \pre `value` is above 0 and all before it
+  /// \pre `value` is positive and larger than all before
   void add(double value, Eigen::Index vertex) {
-    // What is no tie with a value of its own run will be none with the largest of all.
+    // A record that does not tie with a value of its own run cannot tie with the overall largest.
     if (!records_.empty() && records_.back().value < (1 - kNearTie) * value) records_.clear();
     records_.push_back({value, static_cast<double>(vertex)});
   }
 
-  /// First vertex with a value of at least so much; +infinity where there is none.
+  /// First vertex with a value of at least `least`; +infinity if there is none.
   double first_from(double least) const {
     const auto found = std::ranges::find_if(
         records_, [least](const Record& record) { return record.value >= least; });
@@ -135,7 +135,7 @@ std::vector<VertexIndex> Reduction::argmax(
           const Eigen::Index first = part_.first() + part_.first_of(b);
           for (Eigen::Index v = 0; v < of_block.cols(); ++v) {
             for (int k = 0; k < count; ++k) {
-              // Other values than positive ones do not count.
+              // Only positive values count.
               if (!(of_block(k, v) > largest_of_run(k))) continue;
               largest_of_run(k) = of_block(k, v);
               records[own(run)][k].add(of_block(k, v), first + v);

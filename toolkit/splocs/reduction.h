@@ -10,42 +10,43 @@
 
 namespace mimetra {
 
-/// Which vertices of a mesh one of several ranks works on.
+/// The vertices of a mesh that belong to one of several ranks.
 ///
-/// The mesh's vertices are cut into blocks, these into runs, and each rank owns some runs that
-/// follow each other. Blocks and runs depend on nothing but the mesh's number of vertices, so that
-/// what is computed run by run is the same for every number of ranks. A rank owns nothing where
-/// there are more ranks than runs; the first one owns a run wherever there is one.
+/// Vertices are cut into blocks, and blocks are grouped into runs. Each rank owns consecutive runs.
+/// Blocks and runs depend only on the mesh's number of vertices, so results computed run by run are
+/// the same for every number of ranks. If there are more ranks than runs, some ranks own nothing.
+/// The first rank owns a run unless the mesh is empty.
 class VertexPart {
  public:
-  /// Vertices in a block: wide products, and all that ADMM needs of them in a megabyte of cache.
+  /// Vertices in a block: wide enough for fast products, while ADMM's data of a block fit in a
+  /// megabyte of cache.
   static constexpr Eigen::Index kBlock = 192;
-  /// Enough for as many ranks or threads to work, few for what is kept of each.
+  /// Enough runs for 64 ranks or threads, but few enough to keep results of each.
   static constexpr int kMostRuns = 64;
 
   VertexPart() = default;
-  /// Of a mesh of so many vertices. Throws std::invalid_argument unless 0 <= rank < ranks.
+  /// Part of a mesh of `mesh_vertices` vertices. Throws std::invalid_argument unless 0 <= rank <
+  /// ranks.
   explicit VertexPart(Eigen::Index mesh_vertices, int rank = 0, int ranks = 1);
 
-  /// N.
+  /// Number of vertices N of the mesh.
   Eigen::Index mesh_vertices() const { return mesh_vertices_; }
   int mesh_runs() const { return mesh_runs_; }
   int rank() const { return rank_; }
   int ranks() const { return ranks_; }
 
-  /// What this rank owns: some of the mesh's runs, of its blocks, and of its vertices, in order.
+  /// Runs, blocks and vertices of the mesh that this rank owns, each consecutive.
   const IndexRange& runs() const { return runs_; }
   int blocks() const { return blocks_.count(); }
   Eigen::Index first() const { return blocks_.first * kBlock; }
   Eigen::Index vertices() const;
 
-  /// First vertex of own block b, counted from first(), and its number of vertices.
+  /// First vertex of the rank's block b, counted from first(), and its number of vertices.
   Eigen::Index first_of(int b) const { return b * kBlock; }
   Eigen::Index size_of(int b) const { return std::min(kBlock, vertices() - first_of(b)); }
 
-  /// Blocks of one of the own runs, counted from the first own block.
+  /// Blocks of one of the rank's runs, counted from its first block.
   IndexRange blocks_of(int run) const;
-  /// Rank that owns a vertex of the mesh.
   int owner(VertexIndex vertex) const;
 
  private:
@@ -60,59 +61,59 @@ class VertexPart {
   IndexRange blocks_;
 };
 
-/// The vertices of a sequence that a rank owns. \pre the sequence outlives it
+/// Sequence of the vertices that a rank owns. \pre the sequence outlives it
 std::shared_ptr<const FrameSource> own_vertices(const FrameSource& sequence,
                                                 const VertexPart& part);
 
-/// What one rank holds of a sequence; it keeps references.
+/// A rank's part of a sequence; it keeps references.
 struct SequencePart {
-  const Positions& rest;       ///< of all vertices of the mesh, N x 3
-  const Triangles& triangles;  ///< of the mesh, M x 3
+  const Positions& rest;       ///< all vertices of the mesh, N x 3
+  const Triangles& triangles;  ///< whole mesh, M x 3
   const FrameSource& frames;   ///< F poses of the n vertices of the rank's VertexPart
 };
 
-/// Sums, largest values and copies over all vertices of a mesh: all that the decomposition needs
-/// beyond one vertex.
+/// Sums, maxima and copies over all vertices of a mesh: every step of the decomposition that
+/// involves more than one vertex.
 ///
 /// Each run of vertices (VertexPart) gives a matrix, which the rank that owns the run computes.
 /// Context::sum() joins the matrices, so results have the same bits for any number of threads, and
-/// of ranks on processors of one kind. Ranks send each other matrices of complete nodes: each rank
-/// but the first sends one if there are 2, 4, 8 ... ranks and 64 runs, otherwise some more.
+/// of ranks with processors of one kind. Ranks send each other matrices of complete nodes. Each
+/// rank except the first sends one if there are 2, 4, 8 ... ranks and 64 runs, otherwise some more.
 ///
-/// If a function that is given to one of these calls throws on one rank only (std::bad_alloc, or
-/// `compute` of on()), the other ranks wait for it: a caller that stops one must stop all.
+/// If a passed function throws on one rank only (std::bad_alloc, or `compute` of on()), the other
+/// ranks wait for it. A caller that stops one rank must stop all.
 class Reduction {
  public:
   using OfRun = Context::OfRun;
   using Join = Context::Join;
   using Compute = std::function<Eigen::MatrixXd()>;
 
-  /// This rank's part of the `vertices` of a mesh. Keeps the context but for its progress, since
-  /// one step of a computation may take many of these calls.
+  /// This rank's part of the `vertices` of a mesh. Keeps the context without its progress function,
+  /// because one step of a computation may take many of these calls.
   explicit Reduction(Eigen::Index vertices, const Context& context = {});
 
   const VertexPart& part() const { return part_; }
   const Context& context() const { return context_; }
-  /// Whether this is the rank that has the results of joined(), sum() and largest().
+  /// Whether this rank receives the results of joined(), sum() and largest().
   bool is_first() const { return part_.rank() == 0; }
 
-  /// Context::sum() over all runs of the mesh: `of_run` is called for each of part().runs().
+  /// Context::sum() over all runs of the mesh; calls `of_run` for each of part().runs().
   Eigen::MatrixXd joined(Eigen::Index rows, Eigen::Index columns, const OfRun& of_run,
                          const Join& join) const;
   Eigen::MatrixXd sum(Eigen::Index rows, Eigen::Index columns, const OfRun& of_run) const;
-  /// joined() by taking the larger number of two.
+  /// Largest value of each entry over all runs, by joined().
   Eigen::MatrixXd largest(Eigen::Index rows, Eigen::Index columns, const OfRun& of_run) const;
 
-  /// What `compute` gives on one rank, on all of them. Factorizations belong here: ranks on
-  /// processors of other kinds need not round alike.
+  /// Result of `compute` on one rank, copied to all ranks. Use it for factorizations, because ranks
+  /// on processors of other kinds may round differently.
   Eigen::MatrixXd on(int rank, const Compute& compute) const;
   Eigen::MatrixXd on_first(const Compute& compute) const { return on(0, compute); }
-  /// What only the first rank has (0 x 0 elsewhere), on all of them.
+  /// Copies a matrix of the first rank (0 x 0 on the others) to all ranks.
   Eigen::MatrixXd everywhere(Eigen::MatrixXd of_first) const;
 
-  /// Vertex with the largest of its values, in each of `count` rows: the lowest of those that tie
-  /// (kNearTie); -1 where no value is above 0. `values` gives those of an own block, count x n; it
-  /// is asked once for each, from several threads. On all ranks.
+  /// Vertex with the largest value in each of `count` rows, on all ranks. Ties (kNearTie) go to the
+  /// lowest vertex; -1 if no value is positive. `values` returns the values of one of the rank's
+  /// blocks, count x n. It is called once per block, from several threads.
   std::vector<VertexIndex> argmax(int count,
                                   const std::function<Eigen::MatrixXd(int block)>& values) const;
 
@@ -121,18 +122,17 @@ class Reduction {
   Context context_;
 };
 
-/// Vertex (of N) where the entry of `energies` (N) is largest, each times its entry of `weights`
-/// (N, or empty for ones), the lowest of those that tie (kNearTie); -1 where no product
-/// is above zero.
+/// Vertex with the largest product of `energies` (N) and `weights` (N, or empty for ones). Ties
+/// (kNearTie) go to the lowest vertex; -1 if no product is positive.
 VertexIndex strongest_vertex(const Eigen::Ref<const Eigen::VectorXd>& energies,
                              const Eigen::VectorXd& weights = {});
 
-/// The same, where a rank has the `energies` and `weights` of its vertices only (n). The vertex is
-/// one of the mesh, on all ranks.
+/// Same for a rank that has only the `energies` and `weights` of its own n vertices. Returns a
+/// vertex of the mesh, on all ranks.
 VertexIndex strongest_vertex(const Eigen::Ref<const Eigen::VectorXd>& energies,
                              const Eigen::VectorXd& weights, const Reduction& reduction);
 
-/// Squared length of each vertex's displacement in one component (3N): N.
+/// Squared length of each vertex's displacement (N) in one component (3N).
 Eigen::VectorXd vertex_energies(const Eigen::Ref<const Eigen::RowVectorXd>& component);
 
 }  // namespace mimetra

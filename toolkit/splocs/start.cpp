@@ -10,20 +10,20 @@
 namespace mimetra {
 namespace {
 
-// Residual energy, relative to the most moving vertex, that is rounding of the subtractions and
-// nothing else: amplitudes of 1e-12.
+// Residual energy, relative to the vertex that moves most, that is only rounding of the
+// subtractions: amplitudes of 1e-12.
 constexpr double kNothingLeft = 1e-24;
 
-// Two signs whose norms differ by less than this share are told apart by time, because rounding
-// would decide between them.
+// If the norms of both signs differ by less than this share, time decides, because rounding would
+// decide otherwise.
 constexpr double kSameNorm = 1e-9;
 
-/// Sums over x, y and z of the columns of a block (3n): one a vertex (n).
+/// Sum over x, y and z for each vertex of a block (n), from its columns (3n).
 Eigen::VectorXd sums_over_axes(const Eigen::RowVectorXd& columns) {
   return columns.reshaped(columns.size() / 3, 3).rowwise().sum();
 }
 
-/// X - W C at the start: kept as X and the components so far, never as a matrix.
+/// Residual X - W C of the start, stored as X and the components so far, never as a matrix.
 class Residual {
  public:
   Residual(const BlockSource<double>& X, const DecompositionOptions& options,
@@ -47,7 +47,7 @@ class Residual {
         kNothingLeft * reduction_.everywhere(reduction_.largest(1, 1, largest_energy))(0);
   }
 
-  /// The vertex with the largest residual energy, weighted, or -1 where nothing is left.
+  /// Vertex with the largest weighted residual energy, or -1 if nothing is left.
   VertexIndex strongest() {
     for (;;) {
       const VertexIndex v = strongest_vertex(energies_, center_weights_, reduction_);
@@ -56,15 +56,15 @@ class Residual {
       const Eigen::Vector2d energy = reduction_.on(
           owner, [&] { return Eigen::Vector2d(energies_[place(v)], at(v).squaredNorm()); });
       if (energy[0] <= nothing_left_) return -1;
-      // The energies carry the rounding of their updates, relative to what the vertex moved at
-      // first: near the end only the residual itself tells whether it is really the largest.
+      // Updates leave rounding in the energies, relative to the vertex's initial motion. Near the
+      // end only the residual itself shows whether the energy is really the largest.
       if (energy[1] >= energy[0]) return v;
       if (owner == X_.part().rank()) energies_[place(v)] = energy[1];
     }
   }
 
-  /// Residual of vertex v (F x 3). The components are subtracted one by one: X - W C in one go
-  /// rounds differently where they cancel, which shows in the weights. \pre the rank owns v
+  /// Residual of vertex v (F x 3). Components are subtracted one by one: X - W C at once rounds
+  /// differently if they cancel, which the weights show. \pre the rank owns v
   Eigen::MatrixX3d at(VertexIndex v) const {
     Eigen::MatrixX3d residual = X_.vertex(v);
     const Eigen::MatrixX3d components = start_.components.vertex(v);
@@ -72,8 +72,8 @@ class Residual {
     return residual;
   }
 
-  /// Adds the component that the weights `w` explain best where `support` (N) is below 1, and on
-  /// other parts of the surface as far as they count for less than the largest.
+  /// Adds the component that the weights `w` explain best. It is scaled by 1 - `support` (N) on the
+  /// centre's part of the surface and by 1 - weight on others.
   void explain(VertexIndex center, const Eigen::VectorXd& w, Eigen::VectorXd support) {
     for (std::size_t v = 0; v < parts_.of_vertex.size(); ++v) {
       const int part = parts_.of_vertex[v];
@@ -105,10 +105,10 @@ class Residual {
  private:
   int size() const { return static_cast<int>(start_.centers.size()); }
 
-  /// Of an own vertex, among the own ones.
+  /// Index of vertex v among the rank's vertices.
   Eigen::Index place(VertexIndex v) const { return v - X_.part().first(); }
 
-  /// Energies of a block's vertices over all frames; returns the largest.
+  /// Sets the energies of a block's vertices over all frames and returns the largest.
   double set_energies(int b) {
     const auto X = X_.block(b);
     Eigen::RowVectorXd squares = Eigen::RowVectorXd::Zero(X->cols());
@@ -120,9 +120,9 @@ class Residual {
 
   const BlockSource<double>& X_;
   Start start_;
-  Eigen::VectorXd energies_;  ///< of the own vertices (n)
+  Eigen::VectorXd energies_;  ///< energies of the rank's vertices (n)
   const PartWeights& parts_;
-  Eigen::VectorXd center_weights_;  ///< of the own vertices, or empty
+  Eigen::VectorXd center_weights_;  ///< weights of the rank's vertices, or empty
   const Reduction& reduction_;
   double nothing_left_ = 0;
 };
@@ -146,7 +146,7 @@ bool prefers_negative(const Eigen::VectorXd& w) {
 }  // namespace
 
 Eigen::VectorXd oriented_weights(const Eigen::VectorXd& w, SignRule rule, bool nonnegative) {
-  // Signed weights have the same norm either way: the literal rule cannot choose between them.
+  // Both signs of signed weights have the same norm: the literal rule cannot choose between them.
   if (rule == SignRule::literal && nonnegative) {
     const Eigen::VectorXd positive = feasible_weights(w, true);
     const Eigen::VectorXd negative = feasible_weights(-w, true);

@@ -14,18 +14,18 @@
 namespace mimetra {
 namespace {
 
-/// A method with its mesh.
+/// A method prepared for a mesh.
 struct Geodesics {
   DistanceFunction distances;
-  /// From the nearest of several; without it, each of them is asked for.
+  /// Distances from the nearest of several sources. If null, the distances from each are computed.
   std::function<Eigen::VectorXd(std::span<const VertexIndex>)> nearest = {};
-  /// Sources that are best asked for together.
+  /// Number of sources that are fastest together.
   int group = 1;
   int degenerate_triangles = 0;
   std::vector<VertexIndex> vertices_without_face;
 };
 
-/// One source after the other.
+/// Method that takes one source at a time.
 template <typename Method>
 Geodesics one_at_a_time(const Positions& positions, const Triangles& triangles) {
   const auto method = std::make_shared<const Method>(positions, triangles);
@@ -37,7 +37,8 @@ Geodesics one_at_a_time(const Positions& positions, const Triangles& triangles) 
 }
 
 Geodesics prepared(const Positions& positions, const Triangles& triangles, GeodesicMethod method) {
-  // CGAL's paths from several vertices of one triangle end in a failed assertion.
+  // The exact method takes its sources one by one: CGAL's shortest paths from several vertices of
+  // one triangle fail an assertion.
   if (method == GeodesicMethod::exact) {
     return one_at_a_time<geodesic::ExactGeodesics>(positions, triangles);
   }
@@ -62,12 +63,12 @@ void check_size(const Positions& positions, const Weld& weld) {
                               " as in the mesh");
 }
 
-/// Distances from the sources that were asked for last.
+/// Distances from the most recently requested sources.
 class LatestDistances {
  public:
   explicit LatestDistances(std::size_t bytes) : bytes_(bytes) {}
 
-  /// Null where none are kept.
+  /// Distances from `source`, or null if they are not kept.
   const Eigen::VectorXd* find(VertexIndex source) {
     const auto found = kept_.find(source);
     if (found == kept_.end()) return nullptr;
@@ -75,7 +76,7 @@ class LatestDistances {
     return &found->second.distances;
   }
 
-  /// \pre as many distances as from every other source
+  /// \pre the same number of distances for every source
   void keep(VertexIndex source, Eigen::VectorXd distances) {
     const std::size_t most = bytes_ / (sizeof(double) * static_cast<std::size_t>(distances.size()));
     while (!kept_.empty() && kept_.size() >= most) {
@@ -88,7 +89,7 @@ class LatestDistances {
  private:
   struct Entry {
     Eigen::VectorXd distances;
-    std::int64_t asked = 0;  ///< when, in requests
+    std::int64_t asked = 0;  ///< number of the latest request
   };
 
   std::size_t bytes_;
@@ -141,14 +142,14 @@ std::vector<VertexIndex> SurfaceDistances::State::representatives(
   return places;
 }
 
-/// Distances from representatives.
+/// Computes distances from representatives.
 Eigen::MatrixXd SurfaceDistances::State::computed(std::span<const VertexIndex> sources) const {
   const int group = geodesics.group;
   const auto count = static_cast<int>(sources.size());
   Eigen::MatrixXd found(static_cast<Eigen::Index>(weld.representative.size()), count);
   const auto compute_group = [&](int i) {
     const int first = i * group, size = std::min(group, count - first);
-    // Every vertex takes the distance of the one that stands for it.
+    // Every vertex takes the distance of its representative.
     found.middleCols(first, size) =
         geodesics.distances(sources.subspan(first, size))(weld.representative, Eigen::all);
   };
@@ -164,7 +165,7 @@ SurfaceDistances::SurfaceDistances(const Positions& positions, const Triangles& 
   state_->weld = weld;
   state_->threads = context.threads();
   state_->geodesics = prepared(positions, weld.welded(triangles), method);
-  // The others of a welded group lose their triangles to the one that stands for them.
+  // In a welded group only the representative has triangles. The others count as having them too.
   auto& faceless = state_->geodesics.vertices_without_face;
   std::erase_if(faceless, [&weld, known = faceless](VertexIndex vertex) {
     return !std::binary_search(known.begin(), known.end(), weld.representative[vertex]);

@@ -13,10 +13,10 @@
 namespace mimetra {
 namespace {
 
-// Poses in the first sketch; each further one has twice as many.
+// Poses in the first sketch; each further sketch has twice as many.
 constexpr Eigen::Index kFirstSketch = 32;
 
-/// The output of SplitMix64 for a state: every bit depends on every bit of it.
+/// Output of SplitMix64 for a state: every bit depends on every bit of it.
 ///
 /// [Steele, Lea, Flood. Fast Splittable Pseudorandom Number Generators. OOPSLA 2014]
 std::uint64_t scrambled(std::uint64_t state) {
@@ -25,8 +25,9 @@ std::uint64_t scrambled(std::uint64_t state) {
   return state ^ (state >> 31);
 }
 
-/// A random sign for each coordinate of a block's `vertices` and each pose, which depends on these
-/// two alone: x of all vertices, then y, then z (3 vertices x poses). `first` is the first vertex.
+/// Random sign for each coordinate of a block's `vertices` and each pose, which depends only on
+/// these two. Rows are x of all vertices, then y, then z (3 vertices x poses). `first` is the first
+/// vertex.
 Eigen::MatrixXd random_signs(Eigen::Index first, Eigen::Index vertices, Eigen::Index poses) {
   constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15u;
   Eigen::MatrixXd signs(3 * vertices, poses);
@@ -42,7 +43,7 @@ Eigen::MatrixXd random_signs(Eigen::Index first, Eigen::Index vertices, Eigen::I
   return signs;
 }
 
-/// `poses` random mixtures of the vertices' motions, orthonormalised (F x poses).
+/// Orthonormal basis of `poses` random mixtures of the vertices' motions (F x poses).
 Eigen::MatrixXd sketched_basis(const BlockSource<double>& X, Eigen::Index poses,
                                const Reduction& reduction, const Context& context) {
   const VertexPart& part = reduction.part();
@@ -67,7 +68,7 @@ VertexBlocks<double> coordinates(const Eigen::MatrixXd& Q, const BlockSource<dou
   return B;
 }
 
-/// Eigenvalues of B B^T, ascending, and below each its vector.
+/// Eigenvalues of B B^T, ascending, with the eigenvector below each.
 Eigen::MatrixXd directions_of(const VertexBlocks<double>& B, const Reduction& reduction) {
   const Eigen::Index poses = B.rows();
   const Eigen::MatrixXd gram = reduction.sum(poses, poses, [&](int run, Eigen::MatrixXd& sum) {
@@ -99,7 +100,7 @@ std::optional<TimeBasis> time_basis(const BlockSource<double>& X, double norm2, 
     const Eigen::VectorXd energies = directions.row(0);
     double lost = norm2 - energies.sum();
     if (lost > tolerance * tolerance * norm2) continue;
-    // Energies ascend: what may still be lost is lost from the front.
+    // Energies ascend, so drop poses from the front while the tolerance allows.
     Eigen::Index dropped = 0;
     while (dropped + 1 < poses && lost + energies[dropped] <= tolerance * tolerance * norm2) {
       lost += energies[dropped++];

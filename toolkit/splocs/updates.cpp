@@ -12,8 +12,8 @@
 namespace mimetra {
 namespace {
 
-// |C_k|^2 up to which a component counts as zero, for the scaled X: the value
-// of the reference implementation.
+// |C_k|^2 up to which a component counts as zero, for the scaled X: the value of the reference
+// implementation.
 constexpr double kNoEnergy = 1e-8;
 
 }  // namespace
@@ -106,13 +106,13 @@ namespace {
 template <typename Scalar>
 using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 
-/// The constant part of an ADMM step: C = (W^T W + rho I)^-1 (W^T X + rho (Z - U)).
+/// Constant matrices of an ADMM step: C = (W^T W + rho I)^-1 (W^T X + rho (Z - U)).
 template <typename Scalar>
 struct StepMatrices {
   Matrix<Scalar> of_data;       ///< (W^T W + rho I)^-1 W^T, K x R
   Matrix<Scalar> of_splitting;  ///< rho (W^T W + rho I)^-1, K x K
 
-  /// From both side by side.
+  /// Splits both matrices, given side by side.
   explicit StepMatrices(const Eigen::MatrixXd& both)
       : of_data(both.leftCols(both.cols() - both.rows()).template cast<Scalar>()),
         of_splitting(both.rightCols(both.rows()).template cast<Scalar>()) {}
@@ -138,7 +138,7 @@ auto lengths(const Row& row, Eigen::Index n) {
       .sqrt();
 }
 
-/// All ADMM steps on one block of components and their dual variable, in its cache.
+/// Runs all ADMM steps on one block of components and dual variables while it is in cache.
 template <typename Scalar>
 class BlockAdmm {
  public:
@@ -148,7 +148,7 @@ class BlockAdmm {
   BlockAdmm(const Block& X, const StepMatrices<Scalar>& step, const Block& thresholds)
       : step_(step), thresholds_(thresholds), of_data_(step.of_data * X) {}
 
-  /// Moves components `C` and dual variable `U` (K x 3n) by so many steps.
+  /// Moves components `C` and dual variable `U` (K x 3n) by `steps` steps.
   void run(int steps, Block& C, Block& U) {
     difference_ = C - U;
     V_ = of_data_ + U;
@@ -167,15 +167,16 @@ class BlockAdmm {
  private:
   using Row = Eigen::Array<Scalar, 1, Eigen::Dynamic>;
 
-  /// Share of each vertex's vector that its threshold leaves.
+  /// Computes the share of each vertex's vector that remains after thresholding.
   void shrink(Eigen::Index k) {
-    // Longer than this, or nothing of it is kept; it keeps 0 / 0 away.
+    // Avoids 0 / 0 for vectors of length 0.
     constexpr Scalar kShortest = std::numeric_limits<Scalar>::min();
     const auto v = V_.row(k).array();
     kept_ = (1 - thresholds_.row(k).array() / lengths(v, vertices()).max(kShortest)).max(Scalar(0));
   }
 
-  /// Of Z = kept V and U = V - Z only what the next step needs: Z - U, and the data and U.
+  /// Computes only what the next step needs of Z = kept V and U = V - Z: the difference Z - U, and
+  /// data + U.
   void prepare_next(Eigen::Index k) {
     shrink(k);
     for (int axis = 0; axis < 3; ++axis) {
@@ -187,7 +188,7 @@ class BlockAdmm {
     }
   }
 
-  /// The components are Z in the end: only Z has exact zeros.
+  /// The final components are Z, because only Z has exact zeros.
   void finish(Eigen::Index k, Block& C, Block& U) {
     shrink(k);
     C.row(k).array() = kept_.replicate(1, 3) * V_.row(k).array();
@@ -202,11 +203,12 @@ class BlockAdmm {
   Row kept_;
 };
 
-/// What the blocks of a run add to a ComponentUpdate's sums, in the precision of the blocks.
+/// Contributions of a run's blocks to the sums of a ComponentUpdate, in the precision of the
+/// blocks.
 template <typename Scalar>
 class RunSums {
  public:
-  /// For R rows of X and K components.
+  /// Zero sums for R rows of X and K components.
   RunSums(Eigen::Index R, Eigen::Index K)
       : P_(Matrix<Scalar>::Zero(R, K)),
         H_(Matrix<Scalar>::Zero(K, K)),
@@ -229,7 +231,7 @@ class RunSums {
   Eigen::RowVectorXd penalties_;
 };
 
-/// Calls `work` for all blocks, and adds up what they give to the sums.
+/// Calls `work` for all blocks and adds up their contributions.
 template <typename Scalar, typename Work>
 void sum_over_blocks(ComponentUpdate<Scalar>& update, Eigen::Index R, const Reduction& reduction,
                      const Work& work) {

@@ -10,9 +10,9 @@
 
 namespace mimetra {
 
-/// Displacements of the n vertices that a rank owns in R rows (R x 3n), cut into blocks of
-/// vertices, so that what happens to one block happens in a core's cache. On one rank they are all
-/// vertices of the mesh. Where the blocks are kept is open: they may be more than memory holds.
+/// Displacements of the n vertices that a rank owns (R x 3n), cut into blocks of vertices that fit
+/// in a core's cache. A single rank owns all vertices of the mesh. Derived classes decide where
+/// blocks are kept; they may exceed the memory.
 template <typename Scalar>
 class BlockSource {
  public:
@@ -23,19 +23,19 @@ class BlockSource {
 
   Eigen::Index rows() const { return rows_; }
   const VertexPart& part() const { return part_; }
-  /// n.
+  /// Number of vertices n.
   Eigen::Index vertices() const { return part_.vertices(); }
   int count() const { return part_.blocks(); }
-  /// As first_of() and size_of() of the part.
+  /// First vertex and number of vertices of block b, as in the part.
   Eigen::Index first(int b) const { return part_.first_of(b); }
   Eigen::Index size(int b) const { return part_.size_of(b); }
   Block zero_block(int b) const { return Block::Zero(rows_, 3 * size(b)); }
 
-  /// Block b as it is kept in memory, or read for the caller. From several threads. Throws what
-  /// reading throws.
+  /// Block b as kept in memory, or read for the caller. Safe to call from several threads. Throws
+  /// whatever reading throws.
   virtual std::shared_ptr<const Block> block(int b) const = 0;
 
-  /// A row of `block` with one vertex a row, m x 3.
+  /// A row of `block` as m x 3, with one vertex per row.
   static auto by_vertex(Block& block, Eigen::Index row) {
     return Eigen::Map<Eigen::Matrix<Scalar, Eigen::Dynamic, 3>>(block.row(row).data(),
                                                                 block.cols() / 3, 3);
@@ -45,7 +45,7 @@ class BlockSource {
                                                                       block.cols() / 3, 3);
   }
 
-  /// All rows of one vertex of the mesh (R x 3). \pre the rank owns it
+  /// All rows of vertex v of the mesh (R x 3). \pre the rank owns it
   Eigen::Matrix<Scalar, Eigen::Dynamic, 3> vertex(VertexIndex v) const {
     const Eigen::Index place = v - part_.first();
     const int b = static_cast<int>(place / VertexPart::kBlock);
@@ -65,19 +65,19 @@ class BlockSource {
   VertexPart part_;
 };
 
-/// Blocks that are filled and changed. Different blocks, and different rows of one, from several
-/// threads.
+/// Blocks that can be changed. Several threads may change different blocks, or different rows of a
+/// block.
 template <typename Scalar>
 class KeptBlocks : public BlockSource<Scalar> {
  public:
   using typename BlockSource<Scalar>::Block;
 
-  /// Rows of block b from `row` on.
+  /// Writes `values` to rows of block b, from `row` on.
   virtual void put_rows(int b, Eigen::Index row, const Block& values) = 0;
   virtual void put(int b, Block block) = 0;
-  /// Calls `change` with block b, and keeps what it leaves there.
+  /// Calls `change` with block b, and keeps the changed block.
   virtual void change(int b, const std::function<void(Block&)>& change) = 0;
-  /// Block b is needed no more.
+  /// Frees block b, which is not needed any more.
   virtual void release(int b) = 0;
 
  protected:
@@ -94,10 +94,10 @@ class VertexBlocks : public KeptBlocks<Scalar> {
       BlockSource<Scalar>::zero_block;
 
   VertexBlocks() = default;
-  /// Blocks without memory, for whoever fills them one by one.
+  /// Blocks without memory, to be filled one by one.
   VertexBlocks(Eigen::Index row_count, const VertexPart& part)
       : KeptBlocks<Scalar>(row_count, part), blocks_(part.blocks()) {}
-  /// All vertices of a mesh, from R x 3N.
+  /// All vertices of a mesh, from `frames` (R x 3N).
   explicit VertexBlocks(const Frames& frames)
       : VertexBlocks(frames.rows(), VertexPart(frames.cols() / 3)) {
     for (int b = 0; b < count(); ++b) {
@@ -113,7 +113,7 @@ class VertexBlocks : public KeptBlocks<Scalar> {
   Block& operator[](int b) { return blocks_[b]; }
   const Block& operator[](int b) const { return blocks_[b]; }
 
-  /// \pre this outlives it
+  /// \pre this object outlives the block
   std::shared_ptr<const Block> block(int b) const override {
     return {std::shared_ptr<const Block>(), &blocks_[b]};
   }
@@ -125,7 +125,7 @@ class VertexBlocks : public KeptBlocks<Scalar> {
   void change(int b, const std::function<void(Block&)>& change) override { change(blocks_[b]); }
   void release(int b) override { blocks_[b].resize(0, 0); }
 
-  /// As R x 3n.
+  /// Displacements as R x 3n.
   Frames frames() const {
     Frames frames(rows(), 3 * vertices());
     for (int b = 0; b < count(); ++b) {
@@ -137,7 +137,7 @@ class VertexBlocks : public KeptBlocks<Scalar> {
     return frames;
   }
 
-  /// In another precision; each block is released once it is taken over.
+  /// Blocks in another precision; each block is released once it is converted.
   template <typename Other>
   VertexBlocks<Other> cast() && {
     VertexBlocks<Other> result(rows(), this->part());

@@ -23,17 +23,18 @@ namespace mimetra {
 
 namespace {
 
-/// A frame's solve starts from the weights of the frame before within a block of so many frames
-/// only: blocks do not depend on each other.
+/// Frames per block. A frame's solve starts from the weights of the previous frame, but only within
+/// its block, so that blocks are independent.
 constexpr int kFramesPerBlock = RightHandSide::kLanes;
 
-/// Below this share of a column's energy the regions tell little about it.
+/// Below this share of a column's energy, the regions say little about it.
 constexpr double kWeaklySeenShare = 0.05;
 
-/// A weight at 0 that would go this far below it if it moved alone wants to be negative, and more
-/// weights than this share, over frames and expressions, are many. On a real capture transferred to
-/// other identities: none with the neutral (1e-4 with noise of 0.1 % of the face), 19 to 38 % with
-/// a frame or the mean in its place.
+/// Thresholds for a rest pose that is not neutral. A weight at 0 wants to be negative if it would
+/// move below kWantedStep on its own. The share of such weights, over frames and expressions, must
+/// exceed kUnneutralShare. Measured on a real capture transferred to other identities: 0 with the
+/// neutral as rest pose (1e-4 with noise of 0.1 % of the face). With another frame or the mean pose
+/// as rest pose, 19 to 38 %.
 constexpr double kWantedStep = -0.02;
 constexpr double kUnneutralShare = 0.05;
 
@@ -84,14 +85,15 @@ struct BlendshapeTransfer::State {
   ExpressionRules rules;
   BlendshapeConditions conditions;
   std::vector<Eigen::Index> seen;
-  double mean_diagonal = 0;                 // of gram, over the columns that are seen
-  std::optional<RuledLeastSquares> solver;  // of gram and ridge; columns that are not seen stay
+  double mean_diagonal = 0;                 // of gram, over the columns in `seen`
+  std::optional<RuledLeastSquares> solver;  // for gram and ridge; other columns are held
 };
 
-/// Which expressions L sees, and how well it tells them apart.
+/// Finds the expressions that L sees, and the condition of their Gram matrix.
 void BlendshapeTransfer::State::judge(const BlendshapeModel& target) {
   Eigen::VectorXd full = gram_diagonal(target, all_triangles(target.triangles()), options.edges);
-  // As if all triangles counted as those of L that count most: a fit does not depend on the scale.
+  // A fit does not depend on the scale of the triangle weights. G is therefore scaled as if all
+  // triangles had the largest weight in L.
   const Eigen::VectorXd& counts = options.triangle_weights;
   const std::vector<int>& in_l = gradients.selected();
   if (counts.size() > 0 && !in_l.empty()) full *= counts(in_l).maxCoeff();
@@ -140,7 +142,7 @@ void BlendshapeTransfer::State::check_size(const FrameSource& performance) const
                       " vertices, its rest pose " + std::to_string(vertices));
 }
 
-/// Replaces the weights of the single frames by those that are smooth over time.
+/// Replaces the weights of single frames by weights that are smooth over time.
 void BlendshapeTransfer::State::smooth(const FrameSource& performance, const Eigen::MatrixXd& h,
                                        Eigen::MatrixXd& beta) const {
   const double mu = smoothness_penalty(options.smoothness, performance.times(), mean_diagonal);
@@ -175,7 +177,7 @@ Eigen::MatrixXd BlendshapeTransfer::weights(const FrameSource& performance,
   const int frames = performance.frames();
   const bool smooths = state.options.smoothness > 0;
   Eigen::MatrixXd beta(frames, unknowns), h(smooths ? frames : 0, unknowns);
-  // Weights, and behind them what smoothing needs.
+  // Weights, followed by the right-hand sides that smoothing needs.
   const Eigen::Index columns = smooths ? 2 * unknowns : unknowns;
   const auto solve_block = [&](int first, int count) {
     const FrameBlock block(performance, first, count);

@@ -63,7 +63,7 @@ double quality_of(const Eigen::Ref<const Positions>& positions, const Triangles&
 
 namespace {
 
-/// Length of the longest edge that two triangles share; 0 for none.
+/// Length of the longest edge that two triangles share; 0 if they share none.
 double shared_edge(const Positions& rest, const Triangles& triangles, int one, int other) {
   double longest = 0;
   for (int i = 0; i < 3; ++i) {
@@ -76,19 +76,19 @@ double shared_edge(const Positions& rest, const Triangles& triangles, int one, i
   return longest;
 }
 
-/// Finds what stands in for slivers.
+/// Finds the triangles that supply the gradients of slivers.
 class StandIns {
  public:
   using Parts = std::vector<DeformationGradients::Part>;
 
-  /// Neighbours share an edge of `joined`.
+  /// Triangles are neighbours if they share an edge of `joined`.
   StandIns(const Positions& rest, const Triangles& triangles, const Triangles& joined)
       : rest_(rest),
         triangles_(triangles),
         joined_(joined),
         neighbors_(triangle_neighbors(static_cast<int>(rest.rows()), joined)) {}
 
-  /// The parts of a sliver's gradient, ring by ring.
+  /// Parts of a sliver's gradient, found ring by ring.
   Parts parts_of(int sliver) const {
     const double own = share_of(sliver);
     Parts parts;
@@ -113,15 +113,15 @@ class StandIns {
   }
 
  private:
-  /// Enough of what is asked for.
+  /// The search ends if less than this share of the gradient is missing.
   static constexpr double kNegligible = 1e-6;
-  /// Below so much soundness around a sliver, the identity takes part.
+  /// If the soundness found around a sliver adds up to less, the identity takes the rest.
   static constexpr double kScarce = 1e-3;
   static constexpr std::size_t kMostTriangles = 256;
 
   double share_of(int triangle) const { return own_share(quality_of(rest_, triangles_, triangle)); }
 
-  /// What the triangles of a ring hand on to those that were not seen yet.
+  /// Amounts that the triangles of a ring pass on to unseen neighbours.
   std::map<int, double> next_ring(const std::map<int, double>& ring, std::set<int>& seen) const {
     std::map<int, double> next;
     for (const auto& [triangle, amount] : ring) {
@@ -142,7 +142,7 @@ class StandIns {
 
   const Positions& rest_;
   const Triangles& triangles_;
-  const Triangles& joined_;  // by which they are neighbours
+  const Triangles& joined_;  // defines neighbours
   std::vector<std::vector<int>> neighbors_;
 };
 
@@ -152,7 +152,7 @@ void check_selected(int triangle, int all) {
                               " is selected, expected 0 to " + std::to_string(all - 1));
 }
 
-/// Itself where there are no pairs.
+/// Partners of a triangle; itself if there are no pairs.
 std::vector<Correspondence::Part> partners_of(int triangle, const Correspondence* pairs) {
   if (!pairs) return {{triangle, 1}};
   return {pairs->parts.begin() + pairs->offsets[triangle],

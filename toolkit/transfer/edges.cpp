@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::size_t kTrianglesPerBlock = 256;
 
-/// A column whose motion in L is below 1e-5 of its motion anywhere (squared here) does not move
-/// there: that is what is left of zeros in single precision files.
+/// Square of the least visible share of a column's motion, 1e-5. A column that moves less than this
+/// share in L does not move there. Zeros that single precision files round lie below.
 constexpr double kUnseenShare = 1e-10;
 
 }  // namespace
@@ -34,8 +34,8 @@ Eigen::MatrixXd edge_rows(const BlendshapeModel& target, std::span<const int> tr
 
 namespace {
 
-/// Calls `work` with the edge_rows() of some of the triangles after the other: few enough that
-/// those of every expression stay in cache.
+/// Calls `work` with the edge_rows() of one block of triangles after the other. Blocks are small
+/// enough to stay in cache with all expressions.
 void for_edge_rows(const BlendshapeModel& target, std::span<const int> triangles, EdgeSum sum,
                    const std::function<void(const Eigen::MatrixXd&)>& work) {
   for (std::size_t first = 0; first < triangles.size(); first += kTrianglesPerBlock) {

@@ -9,7 +9,7 @@
 
 namespace mimetra {
 
-/// Edges [b - a, c - a] of a triangle a b c: the V of eq. 10.
+/// Edges [b - a, c - a] of a triangle a b c: the matrix V of eq. 10.
 using Edges = Eigen::Matrix<double, 3, 2>;
 
 inline Edges edges_of(const Eigen::Ref<const Positions>& positions, const Triangles& triangles,
@@ -21,10 +21,10 @@ inline Edges edges_of(const Eigen::Ref<const Positions>& positions, const Triang
   return edges;
 }
 
-/// Over which edges of a triangle eq. 10 and 12 sum squares.
+/// Edges of a triangle over which eq. 10 and 12 sum squares.
 enum class EdgeSum {
-  all,  ///< all three, times 2/3: the mean over the corners that a triangle can be written from
-  two   ///< b - a and c - a: the paper's, which depends on the corner that is written first
+  all,  ///< all three, times 2/3: the mean over the three choices of the first corner
+  two   ///< b - a and c - a, as in the paper: the sum depends on the first corner
 };
 
 constexpr std::string_view choice_name(EdgeSum value) {
@@ -37,7 +37,7 @@ constexpr std::string_view choice_name(EdgeSum value) {
   return {};
 }
 
-/// The 2 x 2 matrix G by which the sum of squares of a change D of the edges is tr(D G D^T).
+/// Matrix G (2 x 2) for which tr(D G D^T) is the sum of squares of a change D of the edges.
 inline Eigen::Matrix2d edge_product(EdgeSum sum) {
   switch (sum) {
     case EdgeSum::all:
@@ -48,7 +48,7 @@ inline Eigen::Matrix2d edge_product(EdgeSum sum) {
   return Eigen::Matrix2d::Identity();
 }
 
-/// The lower triangular L of G = L L^T: squares of D L add up to the sum.
+/// Lower triangular matrix L with G = L L^T: the sum is the squared Frobenius norm of D L.
 inline Eigen::Matrix2d edge_factor(EdgeSum sum) {
   constexpr double kRoot3 = std::numbers::sqrt3;
   switch (sum) {
@@ -60,26 +60,25 @@ inline Eigen::Matrix2d edge_factor(EdgeSum sum) {
   return Eigen::Matrix2d::Identity();
 }
 
-/// Rows of A in eq. 11: edges of the displacement fields of a target, six a triangle, so that A^T A
-/// sums over edges as `sum` says (6 T x D for T triangles).
+/// Matrix A of eq. 11 (6 T x D for T triangles): the edges of the target's displacement fields, six
+/// rows a triangle. They are scaled so that A^T A sums over edges as `sum` says.
 Eigen::MatrixXd edge_rows(const BlendshapeModel& target, std::span<const int> triangles,
                           EdgeSum sum);
 
-/// A^T A of eq. 11 (D x D). Where `weights` are given, the square of triangle i counts weights[i]
-/// times (M).
+/// A^T A of eq. 11 (D x D). If `weights` (M) are given, the square of triangle i is multiplied by
+/// weights[i].
 Eigen::MatrixXd gram_matrix(const BlendshapeModel& target, std::span<const int> triangles,
                             EdgeSum sum, const Eigen::VectorXd& weights = {});
 
-/// Its diagonal (D): how much each expression moves on the triangles.
+/// Diagonal of gram_matrix() without weights (D): how much each expression moves the triangles.
 Eigen::VectorXd gram_diagonal(const BlendshapeModel& target, std::span<const int> triangles,
                               EdgeSum sum);
 
-/// True for an expression that moves on some triangles, where `part` of its gram_diagonal() of
-/// `all` triangles is: what zeros in single precision files leave is no motion.
+/// Returns true if an expression moves some triangles. `part` is its gram_diagonal() over these,
+/// `all` over all triangles. Rounding to single precision is not motion.
 bool moves_there(double part, double all);
 
-/// How much a field of displacements (3N) moves each of all triangles (M): the squares of its
-/// edges.
+/// Squared edge changes of each triangle (M) under a field of displacements (3N).
 Eigen::VectorXd motion_of_triangles(const BlendshapeModel& target,
                                     const Eigen::Ref<const Eigen::VectorXd>& field, EdgeSum sum);
 

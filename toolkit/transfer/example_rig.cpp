@@ -22,19 +22,19 @@ namespace mimetra {
 
 namespace {
 
-/// A vertex that moves by less, as a share of the box's diagonal, does not move: examples come from
-/// files in single precision.
+/// Motion below this share of the box's diagonal is none, because examples come from files in
+/// single precision.
 constexpr double kUnmoved = 1e-6;
 
-/// The pull towards what was transferred begins so many times as strong, and falls from round to
-/// round: the paper's goes from 0.5 to 0.1.
+/// Strength of the prior in the first round, as a multiple of options.prior; it falls to 1. In the
+/// paper it falls from 0.5 to 0.1.
 constexpr double kFirstPrior = 5;
 
-/// Rounds end when no weight changes by more.
+/// Rounds end if no weight changes by more.
 constexpr double kSettled = 1e-4;
 
-/// Weights of a pose are pulled to 0 by this share of an expression's own square: without it, those
-/// of expressions that are nearly alike are open.
+/// Weight of a ridge on a pose's weights, as a share of each expression's squared norm. Without it,
+/// the weights of nearly equal expressions would be undetermined.
 constexpr double kWeightRidge = 1e-3;
 
 constexpr int kTrianglesAtOnce = 256;
@@ -81,17 +81,18 @@ void check(const BlendshapeModel& transferred, const std::vector<RigExample>& ex
   }
 }
 
-/// Displacement fields of a mesh and their gradients in the planes of its triangles, of which
-/// vertices are found again.
+/// Computes gradients of displacement fields in the planes of a mesh's triangles, and fields from
+/// gradients.
 ///
-/// A gradient is 3 x 2, on an orthonormal basis of the triangle's plane: its norm and products are
-/// those of the 3 x 3 gradient, whose third direction says nothing.
+/// A gradient is 3 x 2, on an orthonormal basis of the triangle's plane. Its norm and products
+/// equal the norm and products of the 3 x 3 gradient, which is 0 along the normal.
 class PlaneGradients {
  public:
-  /// Six numbers a triangle, column by column of its gradient.
+  /// Numbers of a triangle's gradient, stored column by column.
   static constexpr int kNumbers = 6;
 
-  /// `rest` N x 3, `triangles` M x 3. Slivers and triangles that `weld` (N) collapses fade out.
+  /// `rest` N x 3, `triangles` M x 3. Slivers fade out, and triangles that `weld` (N) collapses do
+  /// not count.
   PlaneGradients(const Positions& rest, const Triangles& triangles, Weld weld)
       : triangles_(triangles),
         weld_(std::move(weld)),
@@ -115,10 +116,10 @@ class PlaneGradients {
 
   int triangles() const { return static_cast<int>(triangles_.rows()); }
   const Weld& weld() const { return weld_; }
-  /// How much a triangle counts, 0 to 1.
+  /// Weight of each triangle, 0 to 1.
   const std::vector<double>& counts() const { return counts_; }
 
-  /// Gradients of fields (3N x D) at a triangle, 6 x D; 0 where it does not count.
+  /// Gradients of fields (3N x D) at a triangle, 6 x D; 0 if it does not count.
   Eigen::MatrixXd at(int triangle, const Eigen::MatrixXd& fields) const {
     Eigen::MatrixXd gradients = Eigen::MatrixXd::Zero(kNumbers, fields.cols());
     for (int corner = 0; corner < 3; ++corner) {
@@ -134,9 +135,9 @@ class PlaneGradients {
     return number_unknowns(triangles_, counts_, fixed, weld_);
   }
 
-  /// The field (3N) of the least squares of its gradients minus `gradients` (6M), 0 at `fixed`
-  /// vertices (N); a piece without any has its pin at 0, which `unknowns` names. Normal equations
-  /// sum_w (sum_i c_i h_iv . h_iw) d_w = sum_i c_i F_i h_iv. \pre vertices that are one are fixed
+  /// Field (3N) whose gradients fit `gradients` (6M) best in least squares. It is 0 at `fixed`
+  /// vertices (N). Pieces without any have their pin in `unknowns` at 0. The normal equations are
+  /// sum_w (sum_i c_i h_iv . h_iw) d_w = sum_i c_i F_i h_iv. \pre welded vertices are fixed
   /// together
   Eigen::VectorXd field_of(const Eigen::VectorXd& gradients, const VertexUnknowns& unknowns) const {
     using Unknowns = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
@@ -178,13 +179,13 @@ class PlaneGradients {
   std::vector<Hats> hats_;
 };
 
-/// The paper's step A in the differences E_j from the transferred expressions, at one triangle:
+/// Step A of the paper, for the differences E_j from the transferred expressions, at one triangle:
 ///   min sum_s |R_s - sum_j a_sj E_j|^2 + sum_jk <E_j, (C^-1)_jk E_k>
-/// with R_s what is left of example s. C = diag(1 / w_j) is the paper's prior. Added to it is
-/// share <M_j, M_k>, the covariance of E_j = B M_j for an unknown linear map B of gradients: what
-/// an expression does differently than its source, one that moves the triangle alike does as well.
-/// In the dual it takes an S x S system: E = C A^T (A C A^T + N)^-1 R, with N = prior for a pose
-/// and 0 for the true shape of an expression.
+/// R_s is the part of example s that the transferred expressions do not explain. The paper's prior
+/// is C = diag(1 / w_j). Added to it is share <M_j, M_k>, the covariance of E_j = B M_j for an
+/// unknown linear map B of gradients. If an expression differs from its source, expressions that
+/// move the triangle alike then differ in the same way. The dual needs an S x S system: E = C A^T
+/// (A C A^T + N)^-1 R. N is the prior for a pose, and 0 for the true shape of an expression.
 class ExampleFit {
  public:
   ExampleFit(const BlendshapeModel& transferred, const std::vector<RigExample>& examples,
@@ -207,7 +208,7 @@ class ExampleFit {
   ExampleRig solve() const;
 
  private:
-  /// Of each piece (3 x D), by its lowest vertex.
+  /// Mean displacements of each piece (3 x D), by its lowest vertex.
   using Shifts = std::map<VertexIndex, Eigen::MatrixXd>;
 
   const Eigen::MatrixXd& prior() const { return model_.expressions().displacements; }
@@ -239,7 +240,7 @@ class ExampleFit {
   std::vector<FloatingPiece> pieces_;
 };
 
-/// What is known, and where nothing is, what fits the transferred expressions best.
+/// Given weights, and for other examples the best fit of the transferred expressions.
 Eigen::MatrixXd ExampleFit::first_weights() const {
   Eigen::MatrixXd weights =
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(examples_.size()), prior().cols());
@@ -256,7 +257,7 @@ Eigen::MatrixXd ExampleFit::first_weights() const {
   return weights;
 }
 
-/// The paper's step B.
+/// Step B of the paper.
 Eigen::VectorXd ExampleFit::weights_of(std::size_t example,
                                        const Eigen::MatrixXd& displacements) const {
   Eigen::MatrixXd gram = displacements.transpose() * displacements;
@@ -267,8 +268,8 @@ Eigen::VectorXd ExampleFit::weights_of(std::size_t example,
   return box_least_squares(gram, h, Eigen::VectorXd::Zero(count), Eigen::VectorXd::Ones(count));
 }
 
-/// What the expressions become at one place: `before` (q x D) is what they do there, `left` (q x S)
-/// what is left of the examples.
+/// Corrections of the expressions at one place (q x D). `before` (q x D) are the transferred
+/// expressions there, and `left` (q x S) is the unexplained part of the examples.
 Eigen::MatrixXd ExampleFit::correction(const Eigen::MatrixXd& before, const Eigen::MatrixXd& left,
                                        const Eigen::MatrixXd& weights, double strength) const {
   if (left.isZero(0)) return Eigen::MatrixXd::Zero(before.rows(), before.cols());
@@ -286,7 +287,7 @@ Eigen::MatrixXd ExampleFit::correction(const Eigen::MatrixXd& before, const Eige
   return left * system.llt().solve(covariance.transpose());
 }
 
-/// Of every triangle: 6M x D.
+/// Corrections of every triangle's gradients, 6M x D.
 Eigen::MatrixXd ExampleFit::corrections(const Eigen::MatrixXd& left, const Eigen::MatrixXd& weights,
                                         double strength, const Context& context) const {
   constexpr int kNumbers = PlaneGradients::kNumbers;
@@ -305,8 +306,8 @@ Eigen::MatrixXd ExampleFit::corrections(const Eigen::MatrixXd& left, const Eigen
   return result;
 }
 
-/// How far each connected piece goes in the mean, which no gradient tells: by the same fit, in
-/// shares of the mesh's size.
+/// Mean displacement of each connected piece, which gradients do not determine. It comes from the
+/// same fit, in units of the mesh's size.
 ExampleFit::Shifts ExampleFit::shifts(const Eigen::MatrixXd& left, const Eigen::MatrixXd& weights,
                                       double strength) const {
   Shifts result;
@@ -343,7 +344,7 @@ std::vector<bool> ExampleFit::fixed(int expression, const Eigen::MatrixXd& left,
   return result;
 }
 
-/// Moves the pieces of a field that nothing holds, so that their means go where they are to.
+/// Translates the floating pieces of a field so that their means match `shifts`.
 void ExampleFit::add_shifts(Eigen::VectorXd& field, const std::vector<FloatingPiece>& floating,
                             const Shifts& shifts, Eigen::Index expression) const {
   const std::vector<VertexIndex>& one = gradients_.weld().representative;
@@ -360,7 +361,7 @@ void ExampleFit::add_shifts(Eigen::VectorXd& field, const std::vector<FloatingPi
   }
 }
 
-/// The expressions (3N x D) of these weights (S x D).
+/// Expressions (3N x D) that fit the examples with these weights (S x D).
 Eigen::MatrixXd ExampleFit::fitted(const Eigen::MatrixXd& weights, double strength,
                                    const Context& context) const {
   const Eigen::MatrixXd left = poses_ - prior() * weights.transpose();

@@ -11,29 +11,30 @@
 
 namespace mimetra {
 
-/// What is known of an example: it is the true shape of an expression (its index), a pose of these
-/// weights (D), or a pose whose weights are looked for.
+/// Meaning of an example. An index: the pose is the true shape of this expression. A vector (D):
+/// the pose has these weights. Otherwise the weights are unknown and are estimated.
 using ExampleMeaning = std::variant<std::monostate, int, Eigen::VectorXd>;
 
 /// A pose of the target.
 struct RigExample {
-  std::string name;  ///< in errors
-  Positions pose;    ///< N x 3, where the neutral is: without head motion
+  std::string name;  ///< name in error messages
+  Positions pose;    ///< N x 3, without head motion, in the place of the neutral
   ExampleMeaning meaning = {};
 };
 
 struct ExampleRigOptions {
-  /// Pull towards the transferred expressions (the paper's beta), against poses; true shapes of
-  /// expressions are taken as they are.
+  /// Weight of the transferred expressions against poses (the paper's beta). True shapes are
+  /// reproduced exactly, whatever the prior.
   double prior = 0.1;
-  /// The pull on an expression whose gradient is m at a triangle is ((1 + m) / (kappa + m))^theta
-  /// times that: what does not move there shall not begin to.
+  /// Parameters of the prior at a triangle. If an expression's gradient there has norm m, its
+  /// weight is multiplied by ((1 + m) / (kappa + m))^theta. Triangles that an expression does not
+  /// move should not begin to move.
   double kappa = 0.1;
   double theta = 2;
-  /// How much expressions that do the same to a triangle share of what examples tell; 0 is the
-  /// paper's, whose true shapes of expressions tell nothing of others.
+  /// Coupling of expressions that deform a triangle alike, so that they share what examples show.
+  /// With 0, as in the paper, the true shape of an expression does not affect others.
   double share = 1;
-  /// Rounds of expressions from weights and weights from expressions, where weights are looked for.
+  /// Most rounds that alternate between expressions and the unknown weights.
   int rounds = 10;
 
   static constexpr Option kPrior{"prior", &ExampleRigOptions::prior, {.minimum = 1e-6}};
@@ -49,23 +50,25 @@ struct ExampleRigOptions {
 /// Expressions that agree with examples.
 struct ExampleRig {
   Eigen::MatrixXd displacements;  ///< 3N x D
-  Eigen::MatrixXd weights;        ///< of the examples (S x D), each within [0, 1]
+  Eigen::MatrixXd weights;        ///< weights of the examples (S x D), each within [0, 1]
 };
 
-/// Corrects expressions that were transferred to a target by examples of it, in gradient space: for
-/// each triangle, the least squares of what the examples' gradients differ from the expressions'
-/// by, with a pull towards those that were transferred; vertices then follow the gradients.
-/// `transferred` is the target with the expressions of the source; `weld` (N) says which of its
-/// vertices move as one.
+/// Corrects transferred expressions of a target by examples of it, in gradient space.
 ///
-/// A vertex that neither the transferred expression nor an example that holds it moves stays
-/// exactly. The true shape of an expression is returned as it is given; other expressions take over
-/// from it what it does differently where they move alike (options.share), which the paper's do
-/// not. Where no example differs from the transferred expressions, these are returned bit by bit.
+/// For each triangle, a least-squares fit distributes the difference between the examples'
+/// gradients and the expressions'. A prior pulls towards the transferred expressions. The vertices
+/// then follow the gradients. `transferred` is the target with the expressions of the source.
+/// `weld` (N) lists the vertices that move as one.
 ///
-/// Throws std::invalid_argument for options out of range, a pose of another size, weights that are
-/// no D numbers within [0, 1], an index out of range, and two true shapes of one expression;
-/// std::runtime_error where triangles do not determine the vertices; Cancelled.
+/// A vertex stays exactly if neither the transferred expression nor an example that contains the
+/// expression moves it. The true shape of an expression is returned unchanged. Unlike in the paper,
+/// other expressions that move alike take over the difference it makes (options.share). If no
+/// example differs from the transferred expressions, they are returned bit by bit.
+///
+/// Throws std::invalid_argument if an option or index is out of range, or if a pose has another
+/// size. Throws std::invalid_argument if weights are not D numbers within [0, 1], or if an
+/// expression has two true shapes. Throws std::runtime_error if triangles do not determine the
+/// vertices. Throws Cancelled.
 ///
 /// [Li, Weise, Pauly. Example-Based Facial Rigging. ACM TOG 29(4), 2010]
 ExampleRig fit_to_examples(const BlendshapeModel& transferred,

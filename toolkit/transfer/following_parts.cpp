@@ -14,26 +14,28 @@ namespace mimetra {
 
 namespace {
 
-/// Vertices of a part that look for the surface around it: rays, and nearest vertices.
+/// Numbers of a part's vertices that send rays and that look for near surface vertices.
 constexpr std::size_t kRayVertices = 50;
 constexpr std::size_t kLookingVertices = 200;
-/// A vertex looks at so many, and at all that are farther than the nearest by no more than this
-/// share of the face's size: a tooth is to move as a lip does, not as a wrinkle of it.
+/// Surface vertices that a vertex of a part looks at: at least this many. In addition, all that are
+/// farther than the nearest by at most kSeenShare of the face's size. A tooth should move like a
+/// lip and not like a wrinkle of it.
 constexpr std::size_t kSeenVertices = 8;
 constexpr double kSeenShare = 0.02;
 
-/// A part is enclosed if rays from it meet the surface this often, or its back this often.
+/// A part is enclosed if this share of rays meets the surface, or this share meets its back.
 constexpr double kEnclosedShare = 0.6;
 constexpr double kBackShare = 0.3;
 /// A part lies against the surface if no vertex is farther away than this share of the face's size.
 constexpr double kTouchingShare = 0.02;
 
-/// Weighing by what is left settles in a few steps.
+/// Reweighting by residuals settles in a few steps.
 constexpr int kFollowingSteps = 8;
-/// Residuals below this share of the face's size count as none.
+/// Lower bound of the residuals' scale, as a share of the face's size.
 constexpr double kSeenResidual = 1e-4;
 
-/// The rigid motion from `from` to `to` that most of the points agree on, beginning with none.
+/// Rigid motion from `from` to `to` that most of the points agree on. The search starts from no
+/// motion.
 RigidTransform common_motion(const Positions& from, const Positions& to,
                              const Eigen::VectorXd& counts, double least) {
   RigidTransform motion;
@@ -46,7 +48,7 @@ RigidTransform common_motion(const Positions& from, const Positions& to,
   return motion;
 }
 
-/// To the faces, edges and corners of a cube.
+/// Directions to the faces, edges and corners of a cube.
 std::vector<Eigen::Vector3d> ray_directions() {
   std::vector<Eigen::Vector3d> directions;
   for (const int x : {-1, 0, 1}) {
@@ -59,7 +61,7 @@ std::vector<Eigen::Vector3d> ray_directions() {
   return directions;
 }
 
-/// Up to `most` of some vertices, evenly spread over their numbers.
+/// Up to `most` of the vertices, evenly spread over the list.
 std::vector<VertexIndex> some_of(const std::vector<VertexIndex>& vertices, std::size_t most) {
   const std::size_t count = std::min(vertices.size(), most);
   std::vector<VertexIndex> some;
@@ -109,8 +111,8 @@ FollowingParts::FollowingParts(Positions rest, const Triangles& triangles, const
   find(triangles, weld, moves, {});
 }
 
-/// Finds the parts without a moving triangle; `moves` has an entry for each triangle (M). They
-/// follow the vertices `carried`, or, if none are named, all of the other parts.
+/// Finds the parts without a moving triangle; `moves` has one entry a triangle (M). They follow the
+/// vertices `carried`. If that is empty, they follow all vertices of the other parts.
 void FollowingParts::find(const Triangles& triangles, const Weld& weld,
                           const std::vector<bool>& moves, std::vector<VertexIndex> carried) {
   const ConnectedComponents components = connected_components(triangles, weld);
@@ -205,7 +207,7 @@ Eigen::VectorXd FollowingParts::with_surface(Eigen::VectorXd weights) const {
   }
   for (const Part& part : parts_) {
     const Eigen::VectorXd around = weights(part.around);
-    // If they agree, the mean is theirs bit by bit.
+    // If all weights are equal, the mean equals them bit by bit.
     const double least = around.minCoeff();
     const double mean = part.counts.dot((around.array() - least).matrix()) / part.counts.sum();
     weights(part.vertices).setConstant(std::min(least + mean, 1.0));

@@ -36,7 +36,7 @@ VertexUnknowns number_unknowns(const Triangles& triangles, const std::vector<dou
   }
   VertexUnknowns unknowns;
   unknowns.of_vertex.assign(vertices, -1);
-  std::vector<int> number(vertices, -1);  // of each piece, at its lowest vertex
+  std::vector<int> number(vertices, -1);  // of each piece, stored at its lowest vertex
   for (VertexIndex v = 0; v < vertices; ++v) {
     if (fixed[v]) continue;
     const VertexIndex lowest = piece[v], one = weld.representative[v];

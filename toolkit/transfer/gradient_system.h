@@ -10,38 +10,37 @@
 #include "toolkit/transfer/soft_border.h"
 #include "toolkit/transfer/vertex_pull.h"
 
-/// The system of gradient products that vertices are solved for by. Internal to those who solve it.
+/// Sparse system of gradient products whose unknowns are vertices. Internal to the classes that
+/// solve it.
 namespace mimetra {
 
-/// A connected piece of triangles that holds no fixed vertex.
+/// Connected piece of triangles without a fixed vertex.
 struct FloatingPiece {
-  /// Ascending; of vertices that are one, the lowest.
+  /// Lowest vertex of each point of the piece, ascending.
   std::vector<VertexIndex> vertices;
-  /// The first of `vertices` and all that are one with it.
+  /// First of `vertices`, and the vertices welded to it.
   std::vector<VertexIndex> pin;
 };
 
-/// Which vertices are unknowns of the vertex solve.
 struct VertexUnknowns {
-  /// Unknown of each vertex (N), the same for those that are one; -1 where it is fixed or the pin
+  /// Unknown of each vertex (N), shared by welded vertices. -1 for fixed vertices and for the pin
   /// of a floating piece.
   std::vector<int> of_vertex;
   int count = 0;
   std::vector<FloatingPiece> floating;
-  /// The free vertices of each piece that fixed ones hold; ascending, of vertices that are one the
-  /// lowest.
+  /// Free vertices of each piece that has a fixed vertex: the lowest of each point, ascending.
   std::vector<std::vector<VertexIndex>> held;
 };
 
-/// Numbers the vertices that are not `fixed` (N), less one pin per floating piece of the triangles
-/// of positive weight (M). Triangles that share one vertex are one piece, also across a seam that
-/// `weld` (N) closes. \pre vertices that are one are fixed together
+/// Numbers the vertices that are not `fixed` (N), except one pin per floating piece. Pieces consist
+/// of triangles of positive weight (M). Triangles that share a vertex belong to one piece, also
+/// across a seam that `weld` (N) closes. \pre welded vertices are fixed together
 VertexUnknowns number_unknowns(const Triangles& triangles, const std::vector<double>& weights,
                                const std::vector<bool>& fixed, const Weld& weld);
 
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-/// Adds scale * X^T X at the unknowns of X's columns; -1 for none.
+/// Adds scale * X^T X to the entries of the columns' unknowns. -1 marks a column without unknown.
 template <int Columns>
 void add_products(const Eigen::Matrix<double, 3, Columns>& x, double scale,
                   const std::array<int, Columns>& unknowns, Triplets& entries) {
@@ -54,7 +53,7 @@ void add_products(const Eigen::Matrix<double, 3, Columns>& x, double scale,
   }
 }
 
-/// The factor of a system of `unknowns`, none for 0 of them. Throws std::runtime_error where the
+/// Factor of a system of `unknowns`; empty if there are 0. Throws std::runtime_error if the
 /// triangles do not determine the vertices.
 geodesic::SparseFactor factor_of(const Triplets& entries, int unknowns);
 
@@ -64,24 +63,28 @@ struct SmoothEdge {
   double weight;
 };
 
-/// Adds what an edge asks to the system; `unknown_of_vertex` is -1 for none.
+/// Adds the products of one edge to the system. `unknown_of_vertex` is -1 for vertices without
+/// unknown.
 ///
-/// It acts on displacements and not on T_i - T_j, because there the fourth vertices of both
-/// triangles would have to drop out together: without them even the rest pose would move.
+/// The term compares displacement gradients instead of T_i - T_j. For T_i - T_j, the fourth
+/// vertices of both triangles would have to drop out together. Without them even the rest pose
+/// would move.
 void add_smoothness(const Positions& rest, const Triangles& triangles, const SmoothEdge& edge,
                     const std::vector<int>& unknown_of_vertex, Triplets& entries);
 
-/// What the edges of a soft border ask of the right-hand side.
+/// Contributions of a soft border's edges to the right-hand side.
 struct PullOverBorder {
-  std::vector<Edges> own;  ///< of each selected triangle's own corners, as VertexPull takes them
+  std::vector<Edges> own;  ///< at each selected triangle's corners, as in VertexPull
   std::vector<VertexPull::Crossing> crossings;
 };
 
-/// Across the edges of a soft border gradients differ as the shares of the source's do, so that
-/// smoothness costs nothing of the motion itself. Of mu ||G_i - G_j - (phi_i D_i - phi_j D_j)||^2
-/// with D = Q - I in the planes of the target's triangles, vertex v has
+/// Returns what the edges of a soft border add to the right-hand side. Across them gradients should
+/// differ as the source's shares of motion do, so that smoothness does not resist the motion
+/// itself. With D = Q - I in the planes of the target's triangles, an edge contributes
+///   mu ||G_i - G_j - (phi_i D_i - phi_j D_j)||^2
+/// to the energy and
 ///   mu (phi_i D_i - phi_j D_j) (g_iv - g_jv)
-/// on the right-hand side.
+/// to the right-hand side at vertex v.
 PullOverBorder pull_over_border(const Positions& rest, const Triangles& triangles,
                                 const SoftBorder& border, const std::vector<SmoothEdge>& edges,
                                 const DeformationGradients& gradients);

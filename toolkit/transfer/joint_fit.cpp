@@ -13,8 +13,8 @@ namespace mimetra {
 
 namespace {
 
-/// A rotation that changes by less has settled: alternations shrink the change to a tenth each, so
-/// that what remains is of its size.
+/// Rotations have settled if they change by less. Each alternation shrinks the change to a tenth,
+/// so that the remaining error is about as small.
 constexpr double kSettledRotation = 1e-11;
 
 /// Vertices of the triangles, ascending.
@@ -49,7 +49,7 @@ Eigen::Vector3d mean_of_rows(const PositionsView& rows, const std::vector<Vertex
   return sum / static_cast<double>(numbers.size());
 }
 
-/// <A, B> of 3 x 3 matrices.
+/// Inner product of 3 x 3 matrices.
 double product(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   return a.cwiseProduct(b).sum();
 }
@@ -80,7 +80,7 @@ JointFit::JointFit(const Positions& source_rest, const BlendshapeModel& target,
   context.report(1);
 }
 
-/// Of the triangles' vertices, or of what carries them.
+/// Mean place of the triangles' vertices, or of their carriers.
 Eigen::Vector3d JointFit::mean_of(const PositionsView& pose) const {
   if (!options_.pairing) return mean_of_rows(pose, vertices_);
   const Positions places = options_.pairing->carried(pose, vertices_);
@@ -89,7 +89,7 @@ Eigen::Vector3d JointFit::mean_of(const PositionsView& pose) const {
   return sum / static_cast<double>(vertices_.size());
 }
 
-/// A^T b for R^T Q_i. With no rotation its second term is exactly 0.
+/// A^T b for R^T Q_i. The second term is exactly 0 without rotation.
 Eigen::VectorXd JointFit::right_hand_side(const RotationMoments::Moments& moments,
                                           const Eigen::Matrix3d& rotation) const {
   const Eigen::Matrix3d turn = rotation - Eigen::Matrix3d::Identity();
@@ -102,7 +102,7 @@ Eigen::VectorXd JointFit::right_hand_side(const RotationMoments::Moments& moment
   return h;
 }
 
-/// The rotation that carries the edges V~_i(beta) to Q_i V_i best.
+/// Rotation that maps the edges V~_i(beta) to Q_i V_i best.
 Eigen::Matrix3d JointFit::rotation_of(const RotationMoments::Moments& moments,
                                       const Eigen::VectorXd& beta) const {
   Eigen::Matrix3d covariance = moments.leftCols<3>() + moments_.at_rest().leftCols<3>();

@@ -14,9 +14,9 @@ namespace mimetra {
 
 struct JointFitOptions {
   EdgeSum edges = EdgeSum::all;
-  /// Alternations at most; a dozen are needed as a rule. 0 keeps the rotations as they are.
+  /// Most alternations; a dozen usually suffice. 0 keeps the rotations unchanged.
   int iterations = 100;
-  /// Of source and target where their faces differ, or null.
+  /// Pairing of source and target if their faces differ, or null.
   std::shared_ptr<const Pairing> pairing = {};
 
   static constexpr Option kEdges{"edges", &JointFitOptions::edges};
@@ -24,29 +24,31 @@ struct JointFitOptions {
   static constexpr auto declared() { return std::tuple(kEdges, kIterations); }
 };
 
-/// The head's motion and the expressions of each frame.
 struct HeadAndExpressions {
-  std::vector<RigidTransform> motion;  ///< carries the rest pose's place to the frame's (F)
+  std::vector<RigidTransform> motion;  ///< maps the rest pose to the frame's place (F)
   Eigen::MatrixXd weights;             ///< beta (F x D), each within [0, 1]
 };
 
-/// Head rotations R and blendshape weights of a target that follow a source together: minimise over
-/// rotations R and 0 <= beta <= 1 of sum_{i in L} ||Q_i V_i - R V~_i(beta)||^2 for each frame.
-/// Where every vertex moves, this tells head from face by what the target's expressions can do.
+/// Joint fit of head rotations R and blendshape weights of a target to a source.
 ///
-/// A rigid fit of the edges V~_i(beta) to Q_i V_i alternates with the box solve of eq. 10 for
-/// R^T Q_i, which never makes the sum larger. Both need 9 (D + 1) numbers of a frame, so that an
-/// alternation costs nothing that grows with the mesh. The translation carries the mean of the
-/// rest pose and the displacements of beta to the frame's. Queries are const.
+/// For each frame, it minimises sum_{i in L} ||Q_i V_i - R V~_i(beta)||^2 over rotations R and beta
+/// in [0, 1]. If every vertex moves, this separates head from face by the deformations that the
+/// target's expressions can explain.
+///
+/// A rigid fit of the edges V~_i(beta) to Q_i V_i alternates with the box solve of eq. 10 for R^T
+/// Q_i. Neither step increases the sum. Both need only 9 (D + 1) numbers a frame, so the cost of an
+/// alternation does not grow with the mesh. The translation maps the mean of the rest pose plus the
+/// displacements of beta to the frame's mean. Queries are const.
 class JointFit {
  public:
-  /// As BlendshapeTransfer, whose source stands where the target does. Throws MismatchError if the
-  /// vertex counts differ, std::invalid_argument for triangles or options out of range, Cancelled.
+  /// Parameters as for BlendshapeTransfer; the source must lie over the target. Throws
+  /// MismatchError if the vertex counts differ. Throws std::invalid_argument if a triangle or an
+  /// option is out of range. Throws Cancelled.
   JointFit(const Positions& source_rest, const BlendshapeModel& target, std::vector<int> triangles,
            const JointFitOptions& options = {}, const Context& context = {});
 
-  /// `start` (F): what is known of the motion. A frame that is the rest pose keeps the identity and
-  /// no expression. Throws MismatchError where sizes differ, Cancelled, and what reading throws.
+  /// `start` (F) is an estimate of the motion. A frame equal to the rest pose gets the identity and
+  /// no expression. Throws MismatchError if sizes differ, what reading throws, and Cancelled.
   HeadAndExpressions operator()(const FrameSource& performance,
                                 const std::vector<RigidTransform>& start,
                                 const Context& context = {}) const;
@@ -68,8 +70,8 @@ class JointFit {
   DeformationGradients gradients_;
   Eigen::MatrixXd gram_;
   RotationMoments moments_;
-  Eigen::VectorXd upper_;              // 1, or 0 for columns that do not move in L
-  std::vector<VertexIndex> vertices_;  // of the target's triangles
+  Eigen::VectorXd upper_;              // 1, or 0 for columns without motion in L
+  std::vector<VertexIndex> vertices_;  // vertices of the target's triangles in L
   Eigen::Vector3d rest_mean_;
   Eigen::Matrix3Xd mean_fields_;  // mean displacement of each expression
   JointFitOptions options_;

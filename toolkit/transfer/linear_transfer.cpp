@@ -19,11 +19,12 @@
 namespace mimetra {
 namespace {
 
-/// A frame's solve starts from the weights of the frame before within a block of so many only.
+/// Frames per block. A frame's solve starts from the weights of the previous frame within its
+/// block.
 constexpr int kWeightsPerBlock = 16;
 
-/// What the change of the source's gradients along one of its expressions asks of the target's
-/// vertices: dQ_i V_i, with the weights of the edges, gathered at the corners (3N).
+/// Pull of one of the source's expressions on the target's vertices (3N). It is dQ_i V_i times the
+/// edges' weights, gathered at the corners.
 Eigen::VectorXd pull_of(const Eigen::Ref<const Eigen::VectorXd>& field,
                         const BlendshapeModel& source, const BlendshapeModel& target,
                         const DeformationGradients& gradients, const Eigen::Matrix2d& product) {

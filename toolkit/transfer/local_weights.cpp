@@ -15,12 +15,12 @@ namespace mimetra {
 
 namespace {
 
-/// A solve starts from the frame before within such a block only: blocks do not depend on each
-/// other.
+/// Frames per block. A solve starts from the previous frame within its block only, so that blocks
+/// are independent.
 constexpr int kRegionalBlock = RegionalRightHandSide::kLanes;
 
-/// Where a field is not 0, and what its edges are, gathered at the vertices: the product of two
-/// fields over edges is the sum over vertices of one's displacement and the other's gathered edges.
+/// Edges of one region's fields, gathered at the vertices. The product of two fields over edges is
+/// a sum over vertices: one field's displacement times the other's gathered edges.
 class GatheredFields {
  public:
   GatheredFields(const BlendshapeModel& target, const Eigen::VectorXd& shares,
@@ -56,7 +56,7 @@ class GatheredFields {
     }
   }
 
-  /// With the fields of another region (D x D): theirs are the rows.
+  /// Products with the fields of another region (D x D), which are the rows.
   Eigen::MatrixXd product(const Eigen::MatrixXd& fields, const RegionShares& shares,
                           Eigen::Index region) const {
     std::vector<std::pair<VertexIndex, double>> common;
@@ -79,12 +79,12 @@ class GatheredFields {
 
   std::vector<int> row_of_vertex_;
   Eigen::Index count_ = 0;
-  Eigen::MatrixXd gathered_;  // 3 rows a vertex
+  Eigen::MatrixXd gathered_;  // three rows a vertex
 };
 
-/// A^T A of eq. 11 over some triangles where each region has weights of its own (R D x R D): entry
-/// (r D + j, s D + m) sums over edges the products of the fields share_r dV_j and share_s dV_m.
-/// Regions without a common triangle have exactly 0. Throws Cancelled.
+/// A^T A of eq. 11 over some triangles, if each region has its own weights (R D x R D). Entry (r D
+/// + j, s D + m) sums over edges the products of the fields share_r dV_j and share_s dV_m. Blocks
+/// of regions without a common triangle are exactly 0. Throws Cancelled.
 Eigen::MatrixXd regional_gram(const BlendshapeModel& target, const RegionShares& shares,
                               const std::vector<int>& triangles, EdgeSum sum,
                               const Context& context) {
@@ -99,7 +99,7 @@ Eigen::MatrixXd regional_gram(const BlendshapeModel& target, const RegionShares&
       gram.block(r * D, s * D, D, D) = block;
       gram.block(s * D, r * D, D, D) = block.transpose();
     }
-    // Symmetric to the last bit, as a solver may read either half.
+    // The block is made exactly symmetric, since a solver may read either half.
     const Eigen::MatrixXd own = gram.block(s * D, s * D, D, D);
     gram.block(s * D, s * D, D, D) = (own + own.transpose()) / 2;
   };
@@ -137,8 +137,8 @@ struct LocalWeights::State {
         right_hand_side(source_rest, gradients, given, shares, of_call.edges) {}
 
   void set_up(const BlendshapeModel& target);
-  /// The weights of one frame, given those of the whole face; `current` is where to start, and
-  /// becomes them. Returns their violation.
+  /// Solves for the weights of one frame, given the whole face's. `current` is the start, or empty,
+  /// and is replaced by the solution. Returns its box_optimality_violation().
   double solve(const Eigen::VectorXd& h, const Eigen::VectorXd& global,
                Eigen::VectorXd& current) const;
 
@@ -150,10 +150,10 @@ struct LocalWeights::State {
   RegionalRightHandSide right_hand_side;
   Eigen::VectorXd pull;
   std::vector<Eigen::Index> seen;
-  Eigen::MatrixXd system;  // gram and pull of those that are seen
+  Eigen::MatrixXd system;  // gram and pull of the unknowns in `seen`
 };
 
-/// Which unknowns move anything, and how strongly each is drawn.
+/// Finds the unknowns that move the target, and sets how strongly the ridge pulls each.
 void LocalWeights::State::set_up(const BlendshapeModel& target) {
   const Eigen::VectorXd full =
       gram_diagonal(target, all_triangles(target.triangles()), options.edges);
@@ -180,7 +180,7 @@ double LocalWeights::State::solve(const Eigen::VectorXd& h, const Eigen::VectorX
   const Eigen::VectorXd upper = Eigen::VectorXd::Ones(unknowns);
   const Eigen::VectorXd start = (current.size() > 0 ? current : everywhere)(seen);
   const Eigen::VectorXd found = block_pivoting(system, right, lower, upper, start);
-  // What moves nothing in a region is the whole face's.
+  // Expressions that do not move in a region keep the whole face's weight.
   current = everywhere;
   current(seen) = found;
   return box_optimality_violation(system, right, lower, upper, found);

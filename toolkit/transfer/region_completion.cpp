@@ -15,17 +15,17 @@ namespace mimetra {
 
 namespace {
 
-/// Displacements of which too little is seen, and what they are called.
+/// Displacements that the regions show too little, and their name.
 struct Unseen {
   Eigen::VectorXd field;  // 3N
   std::string name;
 };
 
-/// What some triangles show of a target's expressions. `open`, regions and discs are triangles of
-/// the source, all else of the target.
+/// Visibility of a target's expressions in some triangles. `open`, regions and discs consist of the
+/// source's triangles. All other triangles are the target's.
 class View {
  public:
-  /// `open` are the triangles that discs may hold.
+  /// `open` are the triangles that discs may contain.
   View(const BlendshapeModel& target, const Regions& regions, const std::vector<int>& open,
        const CompletionOptions& options)
       : target_(target),
@@ -48,8 +48,9 @@ class View {
     can_be_told_apart_ = !moving_.empty() && tells_apart(directions(all_).eigenvalues());
   }
 
-  /// The expression of which the smallest share is seen, or the combination that triangles hardly
-  /// tell from none, where less than `share` of it is seen.
+  /// Returns the expression with the smallest visible share, if that is below `share`. Otherwise
+  /// returns the combination of expressions that the triangles hardly distinguish from none, if
+  /// there is one.
   std::optional<Unseen> least_seen(double share) const {
     if (moving_.empty()) return {};
     const Eigen::VectorXd shares = (seen_.diagonal().array() / all_.diagonal().array())(moving_);
@@ -62,7 +63,7 @@ class View {
     return hardly_told_apart(share);
   }
 
-  /// What the triangles that are not seen hold of a field, at those of the source (M).
+  /// Motion of a field in unseen triangles, summed at the source's triangles (M).
   Eigen::VectorXd missing(const Eigen::VectorXd& field) const {
     Eigen::VectorXd motion = motion_of_triangles(target_, field, edges_);
     for (Eigen::Index t = 0; t < motion.size(); ++t) {
@@ -71,7 +72,7 @@ class View {
     return pairing_ ? at_partners(motion) : motion;
   }
 
-  /// Triangles that would be seen with the disc and are not.
+  /// Unseen triangles that the disc would show.
   std::vector<int> unseen(const Disc& disc) const {
     std::vector<int> with_disc = pairing_ ? in_discs_ : std::vector<int>();
     with_disc.insert(with_disc.end(), disc.triangles.begin(), disc.triangles.end());
@@ -89,7 +90,7 @@ class View {
   }
 
  private:
-  /// The target's triangles over those of the source.
+  /// Target triangles over the source's `triangles`.
   std::vector<int> over(const std::vector<int>& triangles) const {
     return pairing_ ? triangles_over(pairing_->triangles(), triangles) : triangles;
   }
@@ -107,12 +108,12 @@ class View {
 
   const Eigen::MatrixXd& displacements() const { return target_.expressions().displacements; }
 
-  /// Combinations of the expressions that move, from the one that is seen least.
+  /// Eigenvectors of the moving expressions' Gram matrix, from the least visible combination.
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> directions(const Eigen::MatrixXd& gram) const {
     return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(gram(moving_, moving_));
   }
 
-  /// Of a Gram matrix' eigenvalues, ascending.
+  /// Returns true for the eigenvalues (ascending) of a well-conditioned Gram matrix.
   static bool tells_apart(const Eigen::VectorXd& values) {
     return values[values.size() - 1] <= kPoorCondition * values[0];
   }
@@ -133,12 +134,12 @@ class View {
   const Pairing* pairing_;
   std::vector<int> in_discs_;         // triangles of the source in regions and discs
   Eigen::MatrixXd all_, seen_;        // A^T A of eq. 11 (D x D)
-  std::vector<bool> is_seen_;         // or cannot be
-  std::vector<Eigen::Index> moving_;  // expressions that move anything
-  bool can_be_told_apart_ = false;    // by all triangles
+  std::vector<bool> is_seen_;         // or cannot be seen
+  std::vector<Eigen::Index> moving_;  // expressions with motion where discs may lie
+  bool can_be_told_apart_ = false;    // by all open triangles
 };
 
-/// Triangles with a vertex that discs may hold.
+/// Triangles with a vertex that discs may contain.
 std::vector<int> open_triangles(const Triangles& triangles, const DiscSearch& search) {
   std::vector<int> open = all_triangles(triangles);
   std::erase_if(open, [&](int t) {

@@ -10,14 +10,14 @@
 namespace mimetra {
 
 struct CompletionOptions {
-  /// Share of each expression's motion G_jj (eq. 11) that the regions are to see; 0 leaves them as
-  /// they are. On seven other heads, K = 10 regions of a real capture have an MPE of -4 to -23 %
-  /// with 0.05, of -2 to -4 % with 0.3.
+  /// Share of each expression's motion G_jj (eq. 11) that the regions should show. 0 leaves the
+  /// regions unchanged. Measured on seven other heads with K = 10 regions of a real capture: the
+  /// MPE is -4 to -23 % with 0.05, and -2 to -4 % with 0.3.
   double share = 0.3;
-  /// Share of the target's triangles that may be added.
+  /// Most triangles that may be added, as a share of the target's.
   double limit = 0.25;
   EdgeSum edges = EdgeSum::all;
-  /// Of source and target where their faces differ, or null.
+  /// Pairing of source and target if their faces differ, or null.
   std::shared_ptr<const Pairing> pairing = {};
 
   static constexpr Option kShare{
@@ -29,18 +29,23 @@ struct CompletionOptions {
 
 struct CompletedRegions {
   Regions regions;
-  /// Discs that were added: the last of `regions`.
+  /// Number of added discs, which are the last of `regions`.
   int added = 0;
-  /// Whether the limit was reached before all expressions were seen.
+  /// True if the limit was reached before the regions showed all expressions.
   bool limited = false;
 };
 
-/// Adds discs to regions of a source until they see each of the target's expressions, and tell them
-/// apart (condition number of G_L up to kPoorCondition): the one that holds most of what is unseen
-/// of the expression that is seen least, then of the combination that is. Expressions that move
-/// nothing are passed over; of the others counts what they move where discs may lie. Throws
-/// std::invalid_argument for options out of range, and what the search throws. \pre the regions
-/// and the search are of one connectivity, the target of the same or paired with it
+/// Adds discs to regions of a source until they show each of the target's expressions and
+/// distinguish between them. The second condition holds if the condition number of G_L is at most
+/// kPoorCondition.
+///
+/// Each disc is the best for one expression, the one with the least visible share: it contains most
+/// of the expression's unseen motion. Later discs serve the least visible combination of
+/// expressions. Expressions without motion are skipped. Of the others, only motion where discs may
+/// lie counts.
+///
+/// Throws std::invalid_argument if an option is out of range, and what the search throws. \pre the
+/// regions and the search have one connectivity; the target has the same or is paired with it
 CompletedRegions completed(const Regions& regions, const BlendshapeModel& target,
                            DiscSearch& search, const CompletionOptions& options = {});
 

@@ -20,18 +20,19 @@ namespace mimetra {
 
 namespace {
 
-/// A residual below this share of what is wanted is rounding: how large it is says nothing.
+/// A residual below this share of the wanted change is rounding, and its size is meaningless.
 constexpr double kRounding = 1e-20;
 
-/// A share of the triangles times their number may miss a whole one by rounding.
+/// Tolerance for a share of the triangles times their number, which rounding may leave below a
+/// whole number.
 constexpr double kWholeTriangle = 1e-9;
 
 constexpr int kTrianglesPerPiece = 256;
 
-/// What eq. 10 asks of a target's triangles: the b of eq. 11, changes (Q_i - I) V_i of the edges of
-/// the selected triangles, six rows each as in edge_rows(), one column a frame (6 T x F, unit of
-/// the target). `gradients` are those of the target's triangles at the performance's rest pose.
-/// Throws what reading throws, and Cancelled.
+/// Vector b of eq. 11: the changes (Q_i - I) V_i of the selected triangles' edges, in the target's
+/// unit. Each triangle has six rows as in edge_rows(), and each frame one column (6 T x F).
+/// `gradients` are for the target's triangles, taken at the performance's rest pose. Throws what
+/// reading throws, and Cancelled.
 Eigen::MatrixXd wanted_change(const DeformationGradients& gradients, const BlendshapeModel& target,
                               const FrameSource& performance, EdgeSum sum, const Context& context) {
   const std::vector<int>& selected = gradients.selected();
@@ -53,8 +54,8 @@ Eigen::MatrixXd wanted_change(const DeformationGradients& gradients, const Blend
   return wanted;
 }
 
-/// What weights of the target's expressions (F x D) leave of the wanted change of some triangles:
-/// the residual r = b - A beta (6 T x F). Throws Cancelled.
+/// Residual r = b - A beta (6 T x F) of the wanted change after the weights beta (F x D). Throws
+/// Cancelled.
 Eigen::MatrixXd unmet_change(Eigen::MatrixXd wanted, std::span<const int> triangles,
                              const BlendshapeModel& target, const Eigen::MatrixXd& weights,
                              EdgeSum sum, const Context& context) {
@@ -70,7 +71,7 @@ Eigen::MatrixXd unmet_change(Eigen::MatrixXd wanted, std::span<const int> triang
   return wanted;
 }
 
-/// s^2, of the sum of squares of what is wanted.
+/// s^2. `wanted` is the sum of squares of the wanted change.
 double variance_of(const Eigen::MatrixXd& unmet, double wanted) {
   const auto count = static_cast<double>(std::max<Eigen::Index>(1, unmet.size()));
   const double least = kRounding * wanted / count;
@@ -89,7 +90,7 @@ void check_bound(const SelectionBound& bound) {
   }
 }
 
-/// Target triangles over each of the source's; the same without a pairing (null).
+/// Target triangles over each of the source's; without a pairing (null), each triangle itself.
 std::vector<std::vector<int>> over_each(const Pairing* pairing, int triangles) {
   if (!pairing) {
     std::vector<std::vector<int>> same(triangles);
@@ -134,7 +135,7 @@ double DiscChoice::criterion(const Sight& of_regions) const {
   return bias / static_cast<double>(shift.cols()) + variance_ * factor.solve(gram_).trace();
 }
 
-/// The search: what has been chosen, and what each disc would add.
+/// State of the search: the chosen discs, and the contribution of each other disc.
 class RegionSelection::Greedy {
  public:
   Greedy(const RegionSelection& selection, std::span<const Disc> discs)
@@ -159,7 +160,7 @@ class RegionSelection::Greedy {
 
   int source_triangles() const { return static_cast<int>(is_chosen_.size()); }
 
-  /// The disc of at most `room` new triangles that serves best, if any has one.
+  /// Best disc that adds at least one and at most `room` triangles, if there is one.
   std::optional<int> best(int room, const Context& context) {
     parallel_for(
         static_cast<int>(discs_.size()), [this, room](int d) { judge(d, room); }, context);
@@ -172,7 +173,7 @@ class RegionSelection::Greedy {
     return best;
   }
 
-  /// Takes a disc that best() has named; returns the triangles of the source that it adds.
+  /// Takes a disc that best() returned. Returns the number of source triangles that it adds.
   int take(int d) {
     for (const int triangle : discs_[d].triangles) is_chosen_[triangle] = true;
     for (const int triangle : additions_[d].fresh) is_seen_[triangle] = true;
@@ -184,11 +185,11 @@ class RegionSelection::Greedy {
  private:
   struct Addition {
     std::vector<int> touched;  // target triangles with a partner in the disc
-    std::vector<int> fresh;    // those of them that the disc would show, and nothing does yet
-    Sight sight;               // of these
+    std::vector<int> fresh;    // target triangles that the disc would newly show
+    Sight sight;               // of `fresh`
     int cost = 0;              // triangles of the source that are not in L yet
-    double log_criterion = 0;  // with the disc
-    double fall = 0;           // of that, for each of `cost`
+    double log_criterion = 0;  // log J with the disc
+    double fall = 0;           // fall of log J per triangle of `cost`
   };
 
   void judge(int d, int room) {
@@ -225,8 +226,8 @@ class RegionSelection::Greedy {
   std::span<const Disc> discs_;
   std::vector<Addition> additions_;
   std::vector<std::vector<int>> over_;
-  std::vector<char> is_chosen_;  // triangle of the source
-  std::vector<char> is_seen_;    // triangle of the target
+  std::vector<char> is_chosen_;  // triangles of the source
+  std::vector<char> is_seen_;    // triangles of the target
   Sight sight_;
   double log_criterion_;
 };
@@ -235,7 +236,7 @@ RegionSelection::RegionSelection(const FrameSource& performance, const Blendshap
                                  const RegionSelectionOptions& options, const Context& context)
     : target_(target), options_(options) {
   check_options(options);
-  // Each process solves for itself.
+  // Each process solves on its own.
   const Context alone = context.without_ranks();
   const Eigen::MatrixXd weights =
       BlendshapeTransfer(performance.rest(), target, all_triangles(target.triangles()),

@@ -15,33 +15,33 @@
 
 namespace mimetra {
 
-/// What triangles L show of a target's expressions: G_L = sum of A_i^T A_i (eq. 11, D x D), and the
-/// pull H_L = sum of A_i^T r_i (D x F) on their weights of what remains of the source's deformation
-/// when all triangles have been fitted.
+/// Contribution of triangles L to the fit of a target's expressions. G_L = sum of A_i^T A_i
+/// (eq. 11, D x D). H_L = sum of A_i^T r_i (D x F) is the pull of the residual r on the weights.
+/// The residual is the source's deformation that remains after a fit to all triangles.
 struct Sight {
   Eigen::MatrixXd gram;
   Eigen::MatrixXd pull;
 
-  /// Of no triangle.
   static Sight none(Eigen::Index expressions, Eigen::Index frames);
   Sight& operator+=(const Sight& more);
 };
 
-/// How far the weights that triangles L give are from those of all triangles, where it counts:
+/// Distance between the weights from triangles L and from all triangles, measured by the motion
+/// they cause:
 ///
 ///   J(L) = 1/F sum_f |G^(1/2) G_L^-1 h_L,f|^2 + noise s^2 tr(G_L^-1 G)
 ///
-/// with G of all triangles and s^2 the mean square of their residual r. The first term is what L
-/// mistakes of this clip: its unbounded weights move by G_L^-1 h_L. The second is what it would
-/// mistake on average of clips with a residual of `noise` times this one's size squared, which is
-/// the choice by V-optimality [Pukelsheim. Optimal Design of Experiments. 1993]. A ridge keeps
-/// expressions that L does not show finite. Unit of length squared.
+/// G is over all triangles, and s^2 is the mean square of their residual r. The first term is the
+/// error of L on this clip: its unbounded weights move by G_L^-1 h_L. The second term is the
+/// expected error on clips whose squared residual is `noise` times this clip's. It is the
+/// V-optimality criterion [Pukelsheim. Optimal Design of Experiments. 1993]. A ridge keeps J finite
+/// for expressions that L does not show. The unit is length squared.
 class DiscChoice {
  public:
-  /// As a share of the mean diagonal of G.
+  /// Ridge as a share of the mean diagonal of G.
   static constexpr double kRidge = 1e-6;
 
-  /// `gram` G, D x D; `variance` s^2 > 0. \pre G has a diagonal entry above 0
+  /// `gram` is G (D x D), and `variance` is s^2 > 0. \pre G has a diagonal entry above 0
   DiscChoice(Eigen::MatrixXd gram, double variance, double noise);
 
   /// J, above 0.
@@ -54,10 +54,10 @@ class DiscChoice {
 };
 
 struct RegionSelectionOptions {
-  /// Of DiscChoice: what other clips may bring beside this one's own residual.
+  /// Factor `noise` of DiscChoice: the squared residual of other clips relative to this one's.
   double noise = 10;
   EdgeSum edges = EdgeSum::all;
-  /// Of source and target where their faces differ, or null.
+  /// Pairing of source and target if their faces differ, or null.
   std::shared_ptr<const Pairing> pairing = {};
 
   static constexpr Option kNoise{"noise", &RegionSelectionOptions::noise, {.minimum = 1e-6}};
@@ -65,35 +65,34 @@ struct RegionSelectionOptions {
   static constexpr auto declared() { return std::tuple(kNoise, kEdges); }
 };
 
-/// How much may be chosen.
 struct SelectionBound {
-  /// Share of the source's triangles, above 0 and at most 1.
+  /// Largest share of the source's triangles, above 0 and at most 1.
   double share = 1;
-  /// Number of discs; none for any.
+  /// Largest number of discs; empty for no limit.
   std::optional<int> count = {};
 };
 
-/// Discs of a source by which the weights of a target are nearest to those of all its triangles:
-/// one after the other the disc with the largest fall of log J (DiscChoice) for each triangle of
-/// the source that it adds.
+/// Selects discs of a source so that the weights of a target come closest to the weights from all
+/// triangles. Each step adds the disc with the largest fall of log J (DiscChoice) per triangle that
+/// it adds.
 ///
-/// The constructor solves eq. 10 by all triangles and keeps what remains, 6 M x F numbers. After
-/// that everything is algebra in D unknowns. Queries are const.
+/// The constructor solves eq. 10 with all triangles and keeps the residual, 6 M x F numbers.
+/// Everything after that is algebra in D unknowns. Queries are const.
 class RegionSelection {
  public:
-  /// `performance` is the source where the target is, F >= 1 frames with its neutral as rest pose.
-  /// Keeps a reference to the target. Throws what BlendshapeTransfer and reading throw, and
-  /// std::invalid_argument for options out of range.
+  /// `performance` is the source, placed over the target. It has F >= 1 frames, and its neutral is
+  /// the rest pose. Keeps a reference to the target. Throws what BlendshapeTransfer and reading
+  /// throw, and std::invalid_argument if an option is out of range.
   RegionSelection(const FrameSource& performance, const BlendshapeModel& target,
                   const RegionSelectionOptions& options = {}, const Context& context = {});
 
-  /// Numbers of the chosen discs, in their order; none where no disc fits into the bound. Where
-  /// discs are equally good, the first is taken. The triangles of each are the source's, ascending.
-  /// Throws std::invalid_argument for a bound out of range, Cancelled.
+  /// Numbers of the chosen discs in the order of choice, empty if no disc fits into the bound. Of
+  /// equally good discs, the first is taken. Throws std::invalid_argument if the bound is out of
+  /// range, and Cancelled. \pre the triangles of each disc are the source's, ascending
   std::vector<int> choose(std::span<const Disc> discs, const SelectionBound& bound = {},
                           const Context& context = {}) const;
 
-  /// J of triangles of the target; those without partner show nothing.
+  /// J for triangles of the target. Triangles without a partner contribute nothing.
   double criterion(const std::vector<int>& triangles) const;
 
  private:
@@ -103,8 +102,8 @@ class RegionSelection {
 
   const BlendshapeModel& target_;
   RegionSelectionOptions options_;
-  std::vector<int> row_of_;  // of each triangle of the target among those that count, or -1
-  Eigen::MatrixXd unmet_;    // what remains of what is wanted (6 T x F)
+  std::vector<int> row_of_;  // index of each target triangle among those with a partner, or -1
+  Eigen::MatrixXd unmet_;    // the residual r (6 T x F)
   std::optional<DiscChoice> choice_;
 };
 

@@ -19,9 +19,9 @@ namespace mimetra {
 
 namespace {
 
-/// Vertices of a triangle, at places where one has area. The others have no side to be torn from,
-/// or stay at rest anyway; each pass over the frames splits off one of those that part, and
-/// whatever is folded away at one point could part into hundreds.
+/// Vertices of triangles, at places where some triangle has area. The other vertices have no side
+/// to tear from, or stay at rest anyway. Each pass over the frames splits off one parting vertex,
+/// and a surface folded into one point could part into hundreds.
 std::vector<bool> on_surface(const Positions& rest, const Triangles& triangles,
                              const Weld& at_rest) {
   std::vector<bool> has_area(rest.rows(), false), on(rest.rows(), false);
@@ -37,7 +37,8 @@ std::vector<bool> on_surface(const Positions& rest, const Triangles& triangles,
   return on;
 }
 
-/// Of vertices that have a carrier, the lowest at each vertex's place; itself where none has.
+/// Lowest vertex with a carrier at the place of each vertex without one. Other vertices, and those
+/// at places without a carrier, map to themselves.
 std::vector<VertexIndex> carried_at_place(const Weld& at_target, const Pairing& pairing) {
   std::map<VertexIndex, VertexIndex> first;
   for (VertexIndex v = 0; v < pairing.target_vertices(); ++v) {
@@ -51,17 +52,17 @@ std::vector<VertexIndex> carried_at_place(const Weld& at_target, const Pairing& 
   return carried;
 }
 
-/// Of a source's triangles that are partners of a vertex' triangles, and of these themselves, the
-/// longest edges together are how far the carriers of one place may be apart; partners of
-/// neighbours need not be neighbours.
+/// Greatest distance between the carriers of one place. The unit is the longest edge at the
+/// target's vertices plus the longest edge at the source's carriers. Partners of neighbours need
+/// not be neighbours.
 constexpr double kNearEdges = 2;
 
-/// Vertices of a source of other faces, at one place at rest, are lips once they are farther apart
-/// than this share of its diameter: more than single precision's rounding.
+/// Distance, as a share of the diameter, from which coinciding vertices of a source with other
+/// faces are lips and not one point. It is above the rounding of single precision.
 constexpr double kRoundingShare = 1e-6;
 
-/// Target vertices at one place by what carries them. Vertices of the source at one place that part
-/// later, as lips do, are not neighbours.
+/// Groups target vertices at one place by their carriers. Coinciding vertices of the source that
+/// part later, as lips do, are not neighbours.
 class PlacesOverPairs {
  public:
   PlacesOverPairs(const FrameSource& source, const Positions& target_rest,
@@ -76,7 +77,7 @@ class PlacesOverPairs {
         pairing_(pairing),
         moves_as_(moves_as) {}
 
-  /// Of vertices at one place the lowest that each is one with.
+  /// Lowest vertex that each of some vertices at one place is welded to.
   std::vector<VertexIndex> lowest_of(const std::vector<VertexIndex>& place) const {
     std::vector<std::vector<VertexIndex>> carriers;
     double reach = 0;
@@ -118,7 +119,7 @@ class PlacesOverPairs {
   const std::vector<VertexIndex>& moves_as_;
 };
 
-/// Of vertices at one place, for each the lowest that it is near to.
+/// Lowest near vertex of each of some vertices at one place.
 template <typename Near>
 std::vector<VertexIndex> lowest_near(const std::vector<VertexIndex>& place, const Near& near) {
   std::vector<VertexIndex> lowest, firsts;
@@ -130,12 +131,13 @@ std::vector<VertexIndex> lowest_near(const std::vector<VertexIndex>& place, cons
   return lowest;
 }
 
-/// Vertices that are joined, by and by.
+/// Sets of vertices that grow by joining.
 class Joined {
  public:
   explicit Joined(std::vector<bool> on) : on_(std::move(on)), sets_(static_cast<int>(on_.size())) {}
 
-  /// Those of one place (N, -1 for none), each with the lowest that `lowest_of` tells.
+  /// Joins the vertices of each place, each with its lowest vertex by `lowest_of`. `place_of` (N)
+  /// is -1 for vertices without a place.
   template <typename LowestOf>
   void add(const std::vector<VertexIndex>& place_of, const LowestOf& lowest_of) {
     std::map<VertexIndex, std::vector<VertexIndex>> places;
@@ -163,9 +165,8 @@ class Joined {
   DisjointSets sets_;
 };
 
-/// Vertices of a target that are at one place of it and near to each other in the source, or the
-/// other way round. `place_at_source` (N x 3, NaN without): where what carries each vertex is at
-/// rest.
+/// Welds vertices at one place of the target that are near in the source, or the other way round.
+/// `place_at_source` (N x 3) is the rest place of each vertex's carrier, NaN without one.
 Weld near_in_both(const Positions& place_at_source, double near_at_source,
                   const Positions& target_rest, double near_at_target, const Weld& at_target,
                   std::vector<bool> on) {
@@ -193,10 +194,10 @@ Weld near_in_both(const Positions& place_at_source, double near_at_source,
   return joined.weld();
 }
 
-/// A target's rest pose whose vertices are moved as what carries them.
+/// Frames of a target whose rest pose moves with its carriers.
 class CarriedFrames : public FrameSource {
  public:
-  /// `moves_as` (N): another vertex whose carriers count.
+  /// `moves_as` (N): vertex whose carriers each vertex uses.
   CarriedFrames(const FrameSource& source, const Positions& target_rest, const Pairing& pairing,
                 const std::vector<VertexIndex>& moves_as)
       : FrameSource(header_of(source, target_rest)),

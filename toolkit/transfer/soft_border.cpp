@@ -13,8 +13,9 @@ namespace mimetra {
 
 namespace {
 
-/// Weights that change by more than this over the diameter are a border: a fade of half the
-/// diameter is one, what rounding to 8 bits leaves of a constant is hardly any.
+/// Slope of the weights over the diameter from which a triangle belongs fully to the border. A fade
+/// over half the diameter has this slope. The steps that rounding to 8 bits leaves of a constant
+/// are hardly a border.
 constexpr double kBorderSlope = 2;
 
 }  // namespace
@@ -22,7 +23,7 @@ constexpr double kBorderSlope = 2;
 Eigen::VectorXd triangle_weights(const Triangles& triangles, const Eigen::VectorXd& weights) {
   Eigen::VectorXd means(triangles.rows());
   for (int t = 0; t < triangles.rows(); ++t) {
-    // Of three equal numbers this is that number.
+    // Exact if all three weights are equal.
     const double a = weights[triangles(t, 0)];
     means[t] = a + ((weights[triangles(t, 1)] - a) + (weights[triangles(t, 2)] - a)) / 3;
   }
@@ -55,7 +56,8 @@ SoftBorder::SoftBorder(const Positions& rest, const Triangles& triangles,
     slopes += counts_[t] * twice_area * slope;
     squares += counts_[t] * twice_area * slope * slope;
   }
-  // Wider than what is a border at all it would smooth a whole surface whose weights are rounded.
+  // The width is bounded, because a wider border would smooth a whole surface whose weights are
+  // rounded.
   if (squares > 0) width_ = std::min(slopes / squares, 1 / steepest);
 }
 

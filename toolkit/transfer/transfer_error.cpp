@@ -28,8 +28,7 @@ Eigen::Vector3d normal_of(const Edges& edges) {
   return edges.col(0).cross(edges.col(1));
 }
 
-/// By which the second normal is turned around the edge against the first, in (-pi, pi]; none
-/// where one is 0.
+/// Angle from the first normal to the second around the edge, in (-pi, pi]; empty if a normal is 0.
 std::optional<double> angle_between(const Eigen::Vector3d& first, const Eigen::Vector3d& second,
                                     const Eigen::Vector3d& edge) {
   if (first.squaredNorm() == 0 || second.squaredNorm() == 0) return {};
@@ -38,13 +37,13 @@ std::optional<double> angle_between(const Eigen::Vector3d& first, const Eigen::V
   return axis.dot(edge) < 0 ? -angle : angle;
 }
 
-/// The angle between -pi and pi that is as far as another.
+/// Equal angle in (-pi, pi].
 double turned(double angle) {
   if (angle > kPi) return angle - 2 * kPi;
   return angle <= -kPi ? angle + 2 * kPi : angle;
 }
 
-/// The edge from corner k to the next one, in [b - a, c - a].
+/// Edge from a corner to the next one, in terms of [b - a, c - a].
 Eigen::Vector2d side_of(int corner) {
   const std::array<Eigen::Vector2d, 3> sides = {Eigen::Vector2d(1, 0), Eigen::Vector2d(-1, 1),
                                                 Eigen::Vector2d(0, -1)};
@@ -70,7 +69,7 @@ BorderCrease::BorderCrease(const Positions& rest, const Triangles& triangles,
     const int first = sides[0] / 3, second = sides[1] / 3;
     const double change = std::abs(weights[first] - weights[second]);
     if (change == 0) return;
-    // Both along the edge as the first triangle has it.
+    // Both sides point along the edge as the first triangle has it.
     const int corner = sides[0] % 3, corner_of_second = sides[1] % 3;
     const VertexIndex from = triangles(first, corner), to = triangles(first, (corner + 1) % 3);
     const Eigen::Vector2d in_second = side_of(corner_of_second);
@@ -110,11 +109,11 @@ BorderCrease::Excess BorderCrease::operator()(const std::vector<Edges>& wanted,
 
 namespace {
 
-/// What the source's gradients make of the target's edges: (Q_i - I) V_i is the sum over the source
-/// triangles s of (U~_s - U_s) T_is with the constant T_is = U_s^-1 V_i times the share of s.
+/// Changes of the target's edges that the source's gradients ask for. (Q_i - I) V_i is the sum over
+/// source triangles s of (U~_s - U_s) T_is. The constant T_is is U_s^-1 V_i times the share of s.
 class WantedChange {
  public:
-  /// `triangles` of the target.
+  /// `triangles` belong to the target.
   WantedChange(const Positions& source_rest, const Positions& target_rest,
                const Triangles& triangles, const Pairing* pairing)
       : gradients_(gradients_between(source_rest, triangles, pairing, all_triangles(triangles))),
@@ -156,7 +155,7 @@ class WantedChange {
   std::vector<Edges> factors_;
 };
 
-/// Whether the sizes of a source and a result are those of their pairing, or without one the same.
+/// Returns true if the sizes of source and result match their pairing, or each other without one.
 bool fit_together(const FrameSource& source, const FrameSource& result, const Pairing* pairing) {
   const Eigen::Index from = source.triangles().rows(), to = result.triangles().rows();
   if (source.frames() != result.frames()) return false;
@@ -186,8 +185,7 @@ void check(const FrameSource& source, const FrameSource& result, const std::vect
   }
 }
 
-/// The vertices that are in no selected triangle, or of weight 0; only those that the source's
-/// motion carries.
+/// Vertices in no selected triangle, or of weight 0. With a pairing, only vertices with carriers.
 std::vector<VertexIndex> outside_of(const std::vector<int>& selected, const FrameSource& result,
                                     const TransferErrorOptions& options) {
   std::vector<bool> inside(result.vertices(), false);
@@ -203,14 +201,13 @@ std::vector<VertexIndex> outside_of(const std::vector<int>& selected, const Fram
   return outside;
 }
 
-/// Of the wanted motion (M), where vertices have weights.
+/// Shares of the wanted motion (M); empty if vertices have no weights.
 Eigen::VectorXd shares_of(const FrameSource& result, const TransferErrorOptions& options) {
   if (options.weights.size() == 0) return {};
   check_weights(options.weights, result.vertices());
   return triangle_weights(result.triangles(), options.weights);
 }
 
-/// The border that the options describe.
 BorderCrease crease_of(const FrameSource& result, const std::vector<int>& counted,
                        const TransferErrorOptions& options) {
   Eigen::VectorXd weights = options.weights;
@@ -230,7 +227,7 @@ BorderCrease crease_of(const FrameSource& result, const std::vector<int>& counte
           triangle_weights(triangles, weights), counts};
 }
 
-/// 0 for no triangles.
+/// Mean over some triangles; 0 if there are none.
 double mean_over(const Eigen::VectorXd& of_triangles, const std::vector<int>& triangles) {
   double mean = 0;
   for (const int triangle : triangles) mean += of_triangles[triangle] / double(triangles.size());
@@ -241,20 +238,18 @@ bool is_flipped(const Edges& wanted, const Edges& found) {
   return wanted.col(0).cross(wanted.col(1)).dot(found.col(0).cross(found.col(1))) < 0;
 }
 
-/// What is measured of a frame.
 enum Measured {
-  kSum,            ///< of the squared errors of all triangles
-  kShare,          ///< of those against the share that is asked for
-  kStill,          ///< of those at rest
+  kSum,            ///< squared errors, summed over all triangles
+  kShare,          ///< squared errors against the demanded share
+  kStill,          ///< squared errors of a result at rest
   kLeak,           ///< squared
-  kFlipped,        ///< triangles
+  kFlipped,        ///< number of triangles
   kCrease,         ///< RMS over the border
-  kLargestCrease,  ///< of it
-  kMeasured        ///< how many these are
+  kLargestCrease,  ///< largest over the border
+  kMeasured        ///< number of measurements
 };
 using MeasuredRow = Eigen::Matrix<double, 1, kMeasured>;
 
-/// Measures one frame after the other.
 class FrameErrors {
  public:
   FrameErrors(const FrameSource& source, const FrameSource& result,
@@ -274,17 +269,16 @@ class FrameErrors {
     }
   }
 
-  /// Those of some triangles of which all corners take all of the motion.
+  /// Keeps the triangles whose corners all take all of the motion.
   std::vector<int> taking_all(std::vector<int> triangles) const {
     if (shares_.size() == 0) return triangles;
     std::erase_if(triangles, [this](int triangle) { return shares_[triangle] < 1; });
     return triangles;
   }
 
-  /// Triangles that count.
   int counted() const { return static_cast<int>(counted_.size()); }
 
-  /// `squares` are the errors of the triangles (M), which are 0 before.
+  /// `squares` receives the errors of the triangles (M), and must be 0 before.
   MeasuredRow operator()(const PositionsView& source, const PositionsView& result,
                          Eigen::Ref<Eigen::RowVectorXd> squares) const {
     MeasuredRow measured = MeasuredRow::Zero();
@@ -313,8 +307,8 @@ class FrameErrors {
   }
 
  private:
-  /// No gradients fade out as the shares do: where some triangles take all of the motion, only
-  /// they tell.
+  /// No gradients fade out exactly as the shares do. If some triangles take all of the motion, only
+  /// these count.
   bool tells_what_is_missing(int triangle) const {
     return shares_.size() == 0 || largest_share_ < 1 || shares_[triangle] == 1;
   }
@@ -328,8 +322,8 @@ class FrameErrors {
   const Triangles& triangles_;
   std::vector<int> counted_;
   const Positions& rest_;
-  std::vector<bool> has_side_;  // whether a triangle is no sliver (M)
-  Eigen::VectorXd shares_;      // that triangles take; none where all take all
+  std::vector<bool> has_side_;  // true if a triangle is not a sliver (M)
+  Eigen::VectorXd shares_;      // of the triangles (M); empty if all are 1
   double largest_share_ = 1;
   std::vector<VertexIndex> outside_;
   BorderCrease crease_;

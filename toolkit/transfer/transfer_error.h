@@ -13,96 +13,101 @@
 
 namespace mimetra {
 
-/// How far a transferred sequence is from the source's deformation. Where the faces differ, only
-/// the target's triangles with a partner are asked for anything, and count.
+/// Error of a transferred sequence against the source's deformation. If the faces differ, only
+/// triangles of the target that have a partner count.
 struct TransferError {
-  /// DE over all triangles and over L: mean over frames and triangles of ||Q_i V_i - V~_i||^2 (eq.
-  /// 12), a sum over edges (EdgeSum), unit of length squared.
+  /// DE over all triangles and over L: mean over frames and triangles of ||Q_i V_i - V~_i||^2
+  /// (eq. 12). Summed over edges (EdgeSum), unit of length squared.
   double de_all = 0;
   double de_region = 0;
-  /// DE over the triangles of L of which all corners take all of the deformation, none where no
-  /// triangle does; de_region where vertices have no weights.
+  /// DE over the triangles of L whose corners all have weight 1. Empty if there are none, and equal
+  /// to de_region if vertices have no weights.
   std::optional<double> de_inside;
-  /// DE against the share of the deformation that vertices are to take, and what that is of a
-  /// result that stays at rest: what is asked for. Summed over the triangles that take all of it,
-  /// or, where none does or vertices have no weights, over all; divided by the number of all.
+  /// Errors against the share of the deformation that the vertices should take: of the result
+  /// (de_share), and of a result that stays at rest (de_still). They are sums over the triangles
+  /// with weight 1 at all corners, divided by the number of all triangles. If there are none, or
+  /// vertices have no weights, the sums are over all triangles.
   double de_share = 0;
   double de_still = 0;
   Eigen::VectorXd per_frame;     ///< mean over all triangles (F)
-  Eigen::VectorXd per_triangle;  ///< mean over frames (M), 0 for those that do not count
-  int triangles = 0;             ///< those that count
-  /// Largest displacement from the target's rest of a vertex in no triangle of L, over all frames;
-  /// where vertices have weights, of one of weight 0; length.
+  Eigen::VectorXd per_triangle;  ///< mean over frames (M), 0 for triangles that do not count
+  int triangles = 0;             ///< number of triangles that count
+  /// Largest displacement from the target's rest over all frames, for vertices in no triangle of L.
+  /// With weights, for vertices of weight 0. If faces differ, only vertices with carriers count.
+  /// Unit of length.
   double leak = 0;
-  /// How much more the surface bends at the regions' border than the source asks for, in degrees
-  /// (BorderCrease): RMS over the border, and the largest; each in the frame where it is largest. 0
-  /// without a border.
+  /// Excess bend of the surface at the regions' border over the bend that the source asks for, in
+  /// degrees (BorderCrease). `crease` is the RMS over the border, `largest_crease` the largest.
+  /// Both are from their worst frame, and 0 without a border.
   double crease = 0;
   double largest_crease = 0;
-  /// Triangles, over all frames, that turned by more than 90 degrees against where the source's
-  /// gradient, or the share of it that is asked for, wants them; slivers of the target (below
-  /// kSliverQuality) do not count.
+  /// Number of triangles, over all frames, that turned by more than 90 degrees from the orientation
+  /// that the source's gradient asks for. With weights, the gradient's share counts. Slivers of the
+  /// target (below kSliverQuality) do not count.
   int flipped = 0;
 };
 
 struct TransferErrorOptions {
   EdgeSum edges = EdgeSum::all;
-  /// Of source and target where their faces differ, or null.
+  /// Pairing of source and target if their faces differ, or null.
   std::shared_ptr<const Pairing> pairing = {};
-  /// Vertices inside the regions (N), whose border may be a crease; empty for no border.
+  /// Vertices inside the regions (N), whose border may crease. Empty for no border.
   std::vector<bool> inside = {};
-  /// Share of the wanted motion of each vertex (N) where the border is soft; instead of `inside`.
+  /// Share of the wanted motion of each vertex (N) if the border is soft. Replaces `inside`.
   Eigen::VectorXd weights = {};
-  /// Vertices that are one point of the target's surface (N), so that a border on a seam is seen;
-  /// by default none are.
+  /// Vertices that are one point of the target's surface (N), so that a border on a seam is seen.
+  /// Empty for none.
   Weld weld = {};
 
   static constexpr Option kEdges{"edges", &TransferErrorOptions::edges};
   static constexpr auto declared() { return std::tuple(kEdges); }
 };
 
-/// `result` is the transferred sequence before head motion is given back; its rest pose is the
-/// target's neutral. `source` F frames with its neutral as rest. `selected` = L, rows of the
-/// target's triangles. A degenerate source triangle is measured against what stands in for it in
-/// the transfer. Throws MismatchError if sizes differ, std::invalid_argument for a row or an option
-/// out of range or weights that are not in [0, 1], what reading throws, and Cancelled.
+/// Measures a transferred sequence. `result` is the sequence before head motion is restored, and
+/// its rest pose is the target's neutral. `source` has the same F frames, with its neutral as rest
+/// pose. `selected` = L, rows of the target's triangles. For a degenerate source triangle, the
+/// transfer's substitute gradient counts.
+///
+/// Throws MismatchError if sizes differ. Throws std::invalid_argument if a row or an option is out
+/// of range, or weights are not in [0, 1]. Throws what reading throws, and Cancelled.
 TransferError transfer_error(const FrameSource& source, const FrameSource& result,
                              const std::vector<int>& selected,
                              const TransferErrorOptions& options = {}, const Context& context = {});
 
-/// Flipped triangles of all in all frames.
+/// Share of flipped triangles among all that count, over all frames.
 double flipped_share(const TransferError& error);
 
-/// The share of the deformation that is asked for, by de_share, that the result lacks: 0 is exact,
-/// 1 is no better than none. 0 where none is asked for.
+/// Share of the demanded deformation that the result lacks, by de_share. 0 is exact, and 1 is no
+/// better than no motion. 0 if no deformation is demanded.
 double missed_share(const TransferError& error);
 
-/// Mean percentage error 100 (full - k) / full, signed: negative is worse than full (eq. 13). 0
-/// where both are equal, also where both are 0.
+/// Mean percentage error 100 (full - k) / full, signed: negative is worse than full (eq. 13). 0 if
+/// both are equal, even if both are 0.
 double mean_percentage_error(double full, double k);
 
-/// How much more a surface bends at the border of regions than its source asks for.
+/// Excess bend of a surface at the border of regions.
 ///
-/// The border are edges between triangles of which the weights phi differ. Edge ij bends by b, the
-/// signed angle between the normals of its triangles less that at rest. The source asks for the
-/// bend w, that of the normals which its gradients make of the rest's, det(Q) Q^-T n. The excess is
-/// |b| less what of w goes the same way, at least 0. Edges count by their length at rest times
-/// |phi_i - phi_j|, so that a border counts the same whether it is hard or fades.
+/// The border consists of edges between triangles whose weights phi differ. Edge ij bends by b, the
+/// signed angle between its triangles' normals minus the angle at rest. The source asks for the
+/// bend w of the normals that its gradients produce, det(Q) Q^-T n. The excess is |b| minus the
+/// part of w in the same direction, at least 0. Edges are weighted by their length at rest times
+/// |phi_i - phi_j|, so that hard and soft borders weigh the same.
 class BorderCrease {
  public:
-  /// `rest` N x 3, `triangles` M x 3 with vertices that are one written as one; `weights` M. Edges
-  /// of triangles that do not count (M), or are degenerate at rest, and of more than two do not.
+  /// `rest` is N x 3, and `weights` has one entry a triangle (M). `triangles` (M x 3) are on welded
+  /// vertices. Triangles outside `counts` (M) or degenerate at rest are ignored. An edge counts if
+  /// exactly two of the remaining triangles share it.
   BorderCrease(const Positions& rest, const Triangles& triangles, const Eigen::VectorXd& weights,
                const std::vector<bool>& counts);
 
-  /// Of one frame, in degrees.
+  /// Excess of one frame, in degrees.
   struct Excess {
     double rms = 0;
     double largest = 0;
   };
 
-  /// `wanted` are the edges that the source makes of those at rest (M), `pose` N x 3. Triangles
-  /// that have no area there do not count. 0 without a border.
+  /// `wanted` are the edges that the source's gradients make of the edges at rest (M). `pose` is
+  /// N x 3. Edges next to a triangle without area do not count. 0 without a border.
   Excess operator()(const std::vector<Edges>& wanted, const PositionsView& pose) const;
 
   bool empty() const { return hinges_.empty(); }
@@ -110,10 +115,10 @@ class BorderCrease {
  private:
   struct Hinge {
     int first, second;  // triangles
-    /// Of the edge, in the edges of each triangle.
+    /// The edge in terms of each triangle's edges.
     Eigen::Vector2d in_first, in_second;
     double weight;
-    double at_rest;  // angle, radians
+    double at_rest;  // radians
   };
 
   Triangles triangles_;

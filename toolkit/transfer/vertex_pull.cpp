@@ -7,12 +7,12 @@ namespace mimetra {
 
 namespace {
 
-/// As many lanes as a register holds.
+/// Number of lanes in a register.
 constexpr int kQuad = 4;
 using Quad = Eigen::Array<double, 1, kQuad>;
 using Vector = std::array<Quad, 3>;
 
-/// Below any edge of a triangle. The normal of a triangle without area stays 0.
+/// Below any edge length, so that the normal of a triangle without area stays 0.
 constexpr double kNoLength = 1e-80;
 
 Vector read(const double* row) {
@@ -38,13 +38,13 @@ Vector scaled_normal(const Vector& e1, const Vector& e2) {
   return {x * scale, y * scale, z * scale};
 }
 
-/// Vertices of a mesh that are used, numbered in the order of first use.
+/// Vertices that a mesh's terms use, numbered in the order of first use.
 class Slots {
  public:
   Slots(const Triangles& triangles, std::size_t vertices)
       : triangles_(triangles), slot_of_vertex_(vertices, -1) {}
 
-  /// Of a triangle's corners.
+  /// Slots of a triangle's corners.
   Eigen::Vector3i operator()(int triangle) {
     Eigen::Vector3i slots;
     for (int c = 0; c < 3; ++c) slots[c] = slot_of(triangles_(triangle, c));
@@ -111,7 +111,7 @@ VertexPull::Rows VertexPull::gather(const Eigen::Ref<const Frames>& frames) cons
   return positions;
 }
 
-/// Sum of U~_i U_i^-1 x_iv, one row a slot of the target.
+/// Sums of U~_i U_i^-1 x_iv, one row a slot of the target.
 VertexPull::Rows VertexPull::sums(const Rows& positions) const {
   Rows result = Rows::Zero(static_cast<Eigen::Index>(row_of_slot_.size()), kWidth);
   for (const Term& term : terms_) {
@@ -152,7 +152,7 @@ VertexPull::Rows VertexPull::operator()(const Eigen::Ref<const Frames>& frames) 
 
 namespace {
 
-/// V_i G of the selected triangles, times their weights (M) where they have some.
+/// V_i G of the selected triangles, times their `weights` (M) if there are any.
 std::vector<Edges> neutral_edges(const BlendshapeModel& target, const std::vector<int>& selected,
                                  EdgeSum sum, const Eigen::VectorXd& weights = {}) {
   const Eigen::Matrix2d product = edge_product(sum);
@@ -165,7 +165,7 @@ std::vector<Edges> neutral_edges(const BlendshapeModel& target, const std::vecto
   return edges;
 }
 
-/// Numbers the vertices of the selected triangles; -1 for the others.
+/// Numbers of the selected triangles' vertices; -1 for the others.
 std::vector<int> numbered_vertices(const BlendshapeModel& target,
                                    const std::vector<int>& selected) {
   std::vector<int> row(target.vertices(), -1);
@@ -189,7 +189,7 @@ Eigen::MatrixXd rows_at(const Eigen::MatrixXd& basis, const std::vector<int>& ro
   return basis(rows, Eigen::all);
 }
 
-/// The neutral from its centre and the displacement fields at those vertices, three columns each.
+/// Neutral around its centre and displacement fields at the numbered vertices, three columns each.
 Eigen::MatrixXd fields_at(const BlendshapeModel& target, const std::vector<int>& row_of_vertex) {
   const Eigen::MatrixXd rows = rows_at(target.expressions().displacements, row_of_vertex);
   const Eigen::Index vertices = rows.rows() / 3;
@@ -207,7 +207,7 @@ Eigen::MatrixXd fields_at(const BlendshapeModel& target, const std::vector<int>&
   return fields;
 }
 
-/// The sums of V_i G themselves: what identities pull.
+/// Sums of V_i G at the vertices: the pull of identity gradients.
 Positions pull_at_rest(const BlendshapeModel& target, const std::vector<int>& selected,
                        const std::vector<Edges>& vectors, const std::vector<int>& row_of_vertex) {
   Positions pull = Positions::Zero(std::ranges::max(row_of_vertex) + 1, 3);

@@ -24,7 +24,7 @@ namespace mimetra {
 
 namespace {
 
-/// x, y and z of so many frames lie side by side in one block of right-hand sides.
+/// Number of frames whose x, y and z are one block of right-hand sides.
 constexpr int kLanes = VertexPull::kLanes;
 using Rows = VertexPull::Rows;
 using Row = Eigen::RowVector<double, VertexPull::kWidth>;
@@ -66,14 +66,15 @@ void check(const Positions& source_rest, const Positions& target_rest, const Tri
   }
   check_options(options, target_rest.rows());
   if (options.weld.representative.empty()) return;
-  // A box is as long across as a mesh at least; two may be one by way of a third.
+  // A mesh's box is at least as long across as the mesh. Two vertices may be welded through a
+  // third, hence the factor 2.
   constexpr double kApart = 2 * kPartedShare;
   if (!options.pairing) options.weld.check(source_rest, kApart * box_diagonal(source_rest));
   options.weld.check(target_rest, kApart * box_diagonal(target_rest));
 }
 
-/// With an entry of the weld for each vertex, as the anchor the lowest of those that are one, and
-/// those inside as the weights tell.
+/// Options with an entry of the weld for each vertex. The anchor becomes the lowest of its welded
+/// vertices, and the weights define the vertices inside.
 VertexTransferOptions completed(VertexTransferOptions options, Eigen::Index vertices) {
   std::vector<VertexIndex>& one = options.weld.representative;
   if (one.empty()) options.weld = Weld::none(static_cast<int>(vertices));
@@ -81,14 +82,14 @@ VertexTransferOptions completed(VertexTransferOptions options, Eigen::Index vert
   if (options.weights.size() > 0) {
     options.inside.resize(one.size());
     for (VertexIndex v = 0; v < vertices; ++v) options.inside[v] = options.weights[v] > 0;
-    // All or nothing is a hard border: one row of triangles is no room for a soft one.
+    // Weights of only 0 and 1 are a hard border: one row of triangles has no room for a soft one.
     if ((options.weights.array() == 0 || options.weights.array() == 1).all()) options.weights = {};
   }
   return options;
 }
 
-/// Source triangles whose neighbours are found across seams: on the lowest of vertices that are
-/// one, as far as the target tells.
+/// Source triangles on welded vertices, so that neighbours are found across seams. The target's
+/// weld is carried over to the source as far as the pairing allows.
 Triangles welded_source(const Triangles& welded_target, const Weld& weld, const Pairing* pairing) {
   if (!pairing) return welded_target;
   if (!pairing->is_one_to_one()) return pairing->source_triangles();
@@ -109,16 +110,16 @@ std::vector<bool> mask_of(const std::vector<int>& selected, Eigen::Index triangl
 
 }  // namespace
 
-/// Minimising over the fourth vertex leaves, of each ||T_i - Q_i||_F^2, the part in the plane of
-/// the target's triangle: || sum_v p_v g_iv^T - Q_i P_i ||^2 with the gradients g_iv of the hat
-/// functions and P_i the projection on the plane. In displacements d = p - p_rest the normal
+/// Minimising over the fourth vertex leaves the part of ||T_i - Q_i||_F^2 in the plane of the
+/// target's triangle. It is || sum_v p_v g_iv^T - Q_i P_i ||^2 with the gradients g_iv of the hat
+/// functions and the projection P_i onto the plane. In displacements d = p - p_rest the normal
 /// equations are
 ///   sum_w (sum_i w_i g_iv . g_iw) d_w = sum_i w_i (Q_i - I) g_iv,
-/// one N x N matrix for x, y and z. With Q_i - I = (U~_i - U_i) U_i^-1 a frame needs only the
-/// constant vectors U_i^-1 g_iv. Only differences occur: where the mesh lies does not matter.
+/// one N x N matrix for x, y and z. With Q_i - I = (U~_i - U_i) U_i^-1, a frame needs only the
+/// constant vectors U_i^-1 g_iv. Only differences occur, so the place of the mesh does not matter.
 ///
-/// Vertices that are one share d: their rows and columns add up. Where rounding or noise holds them
-/// apart at rest they stay so.
+/// Welded vertices share d: their rows and columns add up. Vertices that rounding or noise holds
+/// apart at rest stay apart.
 struct VertexTransfer::State {
   State(const Positions& source, const Positions& target, const Triangles& triangles,
         const std::vector<int>& selected, const VertexTransferOptions& options,
@@ -146,16 +147,16 @@ struct VertexTransfer::State {
 
   Positions source_rest, target_rest;
   VertexTransferOptions options;
-  const Pairing* pairing;  // of the options, or null
+  const Pairing* pairing;  // from the options, or null
   Triangles triangles,
-      welded;  // of the target: as given, and on the lowest of vertices that are one
+      welded;  // target's triangles: as given, and on the lowest of welded vertices
   std::shared_ptr<const FollowingParts> following;  // null without a pairing
   std::optional<SoftBorder> border;
   std::vector<SmoothEdge> edges;
-  std::vector<bool> in_l;       // of each triangle
-  std::vector<double> weights;  // of each triangle; 0 where it takes no part
-  std::vector<bool> fixed;      // of each vertex
-  VertexUnknowns unknowns;      // numbered as they are eliminated
+  std::vector<bool> in_l;       // per triangle
+  std::vector<double> weights;  // per triangle; 0 if it takes no part
+  std::vector<bool> fixed;      // per vertex
+  VertexUnknowns unknowns;      // in the order of elimination
   geodesic::SparseFactor solver;
   std::optional<VertexPull> pull;
   int collapsed = 0;
@@ -178,7 +179,7 @@ VertexTransfer::State::State(const Positions& source, const Positions& target,
   }
   if (options.weights.size() > 0) border.emplace(target_rest, triangles, options.weights);
   const std::vector<int> solved = uncollapsed(selected);
-  // To find neighbours across seams.
+  // Neighbours are found across seams.
   const Triangles joined = welded_source(welded, options.weld, pairing);
   const DeformationGradients gradients =
       gradients_between(source_rest, triangles, pairing, solved, &joined);
@@ -199,7 +200,7 @@ VertexTransfer::State::State(const Positions& source, const Positions& target,
   context.report(1);
 }
 
-/// Those of L that take part. Throws std::invalid_argument for a row out of range.
+/// Triangles of L that take part. Throws std::invalid_argument if a row is out of range.
 std::vector<int> VertexTransfer::State::uncollapsed(std::vector<int> selected) const {
   for (const int t : selected) {
     if (t >= 0 && t < triangles.rows()) continue;
@@ -210,7 +211,7 @@ std::vector<int> VertexTransfer::State::uncollapsed(std::vector<int> selected) c
   return selected;
 }
 
-/// By what is known of a triangle, whatever its shape.
+/// Weight of a triangle before its shape is considered.
 double VertexTransfer::State::wanted_weight(int triangle) const {
   if (following && following->without_motion()[triangles(triangle, 0)]) return 0;
   if (!in_l[triangle]) return options.outside == Outside::identity ? options.outside_weight : 0;
@@ -239,12 +240,12 @@ void VertexTransfer::State::weigh() {
   }
 }
 
-/// Fixes vertices outside, and those that no triangle determines.
+/// Fixes vertices outside, and vertices that no triangle determines.
 ///
-/// Of vertices that are one, all are fixed where one is outside: it must stay, and the others with
-/// it, or the seam would tear at the regions' border. All move where one is determined by a
-/// triangle: the other side of a seam may have none in L, or none with area. So it is for the one
-/// vertex of a mesh without duplicates.
+/// If one of some welded vertices is outside, all are fixed. Otherwise the seam would tear at the
+/// regions' border. If a triangle determines one of them, all move, since the other side of a seam
+/// may have no triangle with area in L. A single vertex of a mesh without duplicates behaves the
+/// same.
 void VertexTransfer::State::fix() {
   const std::vector<VertexIndex>& one = options.weld.representative;
   std::vector<bool> movable(target_rest.rows(), true), determined(target_rest.rows(), false);
@@ -266,7 +267,7 @@ void VertexTransfer::State::fix() {
   for (std::size_t v = 0; v < one.size(); ++v) fixed[v] = !movable[one[v]] || !determined[one[v]];
 }
 
-/// True where two vertices of a triangle are one.
+/// Returns true if two vertices of a triangle are welded.
 bool VertexTransfer::State::collapses(int triangle) const {
   for (const int a : {0, 1, 2}) {
     const int b = (a + 1) % 3;
@@ -293,11 +294,11 @@ Triplets VertexTransfer::State::stiffness() const {
   return entries;
 }
 
-/// How much the displacement gradients of two neighbours want to be equal: across edges with a
-/// triangle outside L, or of a soft border.
+/// Weight of the difference between two neighbours' displacement gradients. It is positive across
+/// edges with a triangle outside L, or in a soft border.
 double VertexTransfer::State::smoothness_across(int triangle, int neighbor) const {
   if (border) {
-    // What stays is flat, and wants its neighbours to begin so.
+    // A triangle that stays is flat, and its neighbours should begin flat.
     const auto takes_part = [this](int t) { return weights[t] > 0 || border->share(t) == 0; };
     if (!takes_part(triangle) || !takes_part(neighbor)) return 0;
     if (weights[triangle] == 0 && weights[neighbor] == 0) return 0;
@@ -357,8 +358,8 @@ void VertexTransfer::State::prepare_pull(const DeformationGradients& gradients) 
                vectors, unknowns.of_vertex, crossings);
 }
 
-/// From where the vertices of a piece are to where its anchor wants them, on average over them.
-/// Vertices that take a share of the motion take it of the source's, too.
+/// Mean translation from the vertices of a piece to the place that the anchor demands. Vertices
+/// that take a share of the motion also take this share of the source's motion.
 Row VertexTransfer::State::shift_of(const std::vector<VertexIndex>& piece,
                                     const Eigen::Ref<const Frames>& frames,
                                     const Rows& displacement) const {
@@ -388,9 +389,8 @@ Row VertexTransfer::State::shift_of(const std::vector<VertexIndex>& piece,
   return carried > 0 ? Row(shift / static_cast<double>(carried)) : Row(Row::Zero());
 }
 
-/// Fixed vertices around a soft border would hold back what is inside: it moves on, as far as the
-/// border bears it, until each piece is, on average, where its share of the source's motion brings
-/// it.
+/// Compensates for fixed vertices around a soft border, which would hold the inside back. Each
+/// piece moves on, as far as the border can bear, towards its share of the source's mean motion.
 void VertexTransfer::State::undrift(const Eigen::Ref<const Frames>& frames,
                                     Rows& displacement) const {
   for (const std::vector<VertexIndex>& piece : unknowns.held) {
@@ -412,7 +412,7 @@ void VertexTransfer::State::undrift(const Eigen::Ref<const Frames>& frames,
   }
 }
 
-/// Sum of the source's displacements.
+/// Sum of the source's displacements at the carriers, times their weights.
 Row VertexTransfer::State::motion_of(const std::vector<Pairing::Carrier>& carriers,
                                      const Eigen::Ref<const Frames>& frames) const {
   Row motion = Row::Zero();
@@ -425,7 +425,7 @@ Row VertexTransfer::State::motion_of(const std::vector<Pairing::Carrier>& carrie
   return motion;
 }
 
-/// Up to kLanes target poses.
+/// Target poses of up to kLanes frames.
 Frames VertexTransfer::State::solve(const Eigen::Map<const Frames>& frames) const {
   Rows displacement = solver.solve<VertexPull::kWidth>((*pull)(frames));
   Frames poses = target_rest.reshaped<Eigen::RowMajor>().transpose().replicate(frames.rows(), 1);
@@ -464,7 +464,7 @@ VertexTransfer::~VertexTransfer() = default;
 VertexTransfer::VertexTransfer(VertexTransfer&&) noexcept = default;
 VertexTransfer& VertexTransfer::operator=(VertexTransfer&&) noexcept = default;
 
-/// Gives the poses of every kLanes frames to `take`, as Context::for_each_block() does.
+/// Calls `take` with the poses of every kLanes frames, as Context::for_each_block() does.
 void VertexTransfer::State::solve_all(const FrameSource& performance,
                                       const Context::TakeBlock& take,
                                       const Context& context) const {

@@ -17,11 +17,10 @@ namespace mimetra {
 class FollowingParts;
 
 enum class TriangleWeight {
-  unit,  ///< every triangle counts the same [Sumner, Popovic 2004]
+  unit,  ///< all triangles count the same [Sumner, Popovic 2004]
   area   ///< by the area of the target's triangle
 };
 
-/// As people choose it.
 constexpr std::string_view choice_name(TriangleWeight value) {
   switch (value) {
     case TriangleWeight::unit:
@@ -32,13 +31,12 @@ constexpr std::string_view choice_name(TriangleWeight value) {
   return {};
 }
 
-/// What happens to the triangles and vertices outside L.
+/// Treatment of triangles and vertices outside L.
 enum class Outside {
   fixed,    ///< vertices outside the regions stay exactly where they are
-  identity  ///< triangles outside L want to keep their shape, weakly
+  identity  ///< triangles outside L tend weakly to keep their shape
 };
 
-/// As people choose it.
 constexpr std::string_view choice_name(Outside value) {
   switch (value) {
     case Outside::fixed:
@@ -49,11 +47,11 @@ constexpr std::string_view choice_name(Outside value) {
   return {};
 }
 
-/// What holds a connected piece that nothing else holds in place.
+/// Anchor of a connected piece that has no fixed vertex.
 enum class Anchor {
-  source_motion,  ///< its centroid moves as the same vertices of the source do, not scaled; where
-                  ///< faces differ, that of its vertices with carriers as their carriers
-  centroid,       ///< its centroid stays
+  source_motion,  ///< the centroid moves as the source's vertices do, unscaled; if faces differ,
+                  ///< the centroid of the carried vertices moves as their carriers
+  centroid,       ///< the piece's centroid stays
   vertex          ///< one vertex stays
 };
 
@@ -72,29 +70,30 @@ constexpr std::string_view choice_name(Anchor value) {
 struct VertexTransferOptions {
   TriangleWeight triangle_weight = TriangleWeight::unit;
   Outside outside = Outside::fixed;
-  /// Vertices that Outside::fixed lets move (N): those inside the regions. By default the vertices
-  /// all of whose triangles are in L.
+  /// Vertices inside the regions (N), which Outside::fixed lets move. By default, vertices whose
+  /// triangles are all in L.
   std::vector<bool> inside = {};
-  /// Share of the wanted motion that each vertex takes (N), in [0, 1], where the border of the
-  /// regions is soft; empty where it is hard. Vertices of weight 0 are those that are not inside.
+  /// Share of the wanted motion that each vertex takes (N), in [0, 1], for regions with a soft
+  /// border. Empty for a hard border. Vertices of weight 0 count as outside, and `inside` is
+  /// ignored.
   Eigen::VectorXd weights = {};
-  /// Vertices that are one point of the surface and move as one (N), such as closed_seams(); by
-  /// default none are. Where one of them is fixed, all are.
+  /// Vertices that are one point of the surface and move as one (N), such as closed_seams(). Empty
+  /// for none. If one of them is fixed, all are.
   Weld weld = {};
-  /// Of source and target where their faces differ, or null.
+  /// Pairing of source and target if their faces differ, or null.
   std::shared_ptr<const Pairing> pairing = {};
-  /// Parts of the target without a partner; by default found from the pairing.
+  /// Parts of the target that are not solved for. By default they are found from the pairing.
   std::shared_ptr<const FollowingParts> following = {};
-  /// Weight of triangles outside L for Outside::identity, and of those without partner, relative
-  /// to the others.
+  /// Weight of triangles without a partner and, with Outside::identity, of triangles outside L.
+  /// Triangles in L with a partner have weight 1.
   double outside_weight = 0.1;
-  /// Weight of squared differences of displacement gradients across edges of triangles outside L.
+  /// Weight of squared differences of displacement gradients, across edges of triangles outside L.
   double outside_smoothness = 0;
-  /// By default the source's motion. One that is given is refused where fixed vertices hold the
-  /// mesh.
+  /// Anchor of pieces without a fixed vertex, by default Anchor::source_motion. The constructor
+  /// throws if an anchor is given but fixed vertices hold the mesh.
   std::optional<Anchor> anchor = {};
-  /// Vertex of Anchor::vertex, -1 for none. The lowest vertex of a piece holds it if the piece does
-  /// not contain this one.
+  /// Vertex of Anchor::vertex, or -1 for none. A piece that does not contain it is held by its own
+  /// lowest vertex.
   VertexIndex anchor_vertex = -1;
 
   static constexpr Option kTriangleWeight{"triangle_weight",
@@ -113,37 +112,38 @@ struct VertexTransferOptions {
   }
 };
 
-/// Positions of a target that follow a source's deformation gradients on triangles L; the target
-/// has the source's connectivity, or is paired with it, and needs no expressions.
+/// Transfers a source's deformation gradients on triangles L to the positions of a target. The
+/// target has the source's connectivity or is paired with the source. It needs no expressions.
 ///
-/// The fourth-vertex unknowns drop out exactly: what is left is one N x N system of gradient
-/// products, shared by x, y, z and all frames, factored once in the constructor. Translation is
-/// explicit: one pin per connected piece of the weighted triangles that holds no fixed vertex (two
-/// triangles that share one vertex are one piece), and a translation afterwards.
+/// The unknown fourth vertices drop out exactly. The remaining system of gradient products is at
+/// most N x N. It serves x, y, z and all frames, and the constructor factors it once. Translation
+/// is explicit: each connected piece of weighted triangles without a fixed vertex has one pinned
+/// vertex, and is translated afterwards. Two triangles that share a vertex belong to one piece.
 ///
-/// Vertices that are one (VertexTransferOptions::weld) are one unknown of the system: the result is
-/// that of the mesh without duplicates, though each triangle has its own corners' gradient. Those
-/// that rounding or noise holds apart at rest stay as far apart.
+/// Welded vertices (VertexTransferOptions::weld) share one unknown. The result equals the result on
+/// a mesh without duplicates, though each triangle keeps its own corners' gradient. Vertices that
+/// rounding or noise holds apart at rest stay as far apart.
 ///
-/// A triangle without partner wants to keep its shape, with the weight of those outside L, so that
-/// a mouth's inside does not hold the lips. Connected parts without any partner take no part in the
-/// solve: they follow the surface around them or stay (FollowingParts), whether they are in L or
-/// not.
+/// A triangle without a partner tends to keep its shape, with outside_weight, so that a mouth's
+/// inside does not hold the lips. Connected parts without any partner are not solved for, in L or
+/// not. They follow the surface around them or stay (FollowingParts).
 ///
-/// Where vertices take a share of the motion (VertexTransferOptions::weights), the deformation
-/// fades as SoftBorder describes: weights of 1 everywhere give what none give, bit by bit, and
-/// vertices of weight 0 stay exactly, but those that follow. Each piece moves, on average over its
-/// vertices, by that share of the source's motion, within what is SoftBorder::bearable().
+/// If vertices take a share of the motion (VertexTransferOptions::weights), the deformation fades
+/// as SoftBorder describes. Weights of 1 everywhere give the same result as no weights, bit by bit.
+/// Vertices of weight 0 stay exactly, except in parts that follow. Each piece moves on average by
+/// its vertices' shares of the source's motion, as far as SoftBorder::bearable() allows.
 ///
 /// [Sumner, Popovic. Deformation Transfer for Triangle Meshes. ACM TOG 23(3), 2004]
 class VertexTransfer {
  public:
-  /// `source_rest`, `target_rest` N x 3; `selected` are rows of the target's `triangles` (M x 3),
-  /// with weights those that have a corner of weight above 0.
-  /// Throws MismatchError if vertex counts differ, std::invalid_argument for options out of
-  /// range, an explicit anchor where vertices are fixed, an index out of range, vertices that are
-  /// one but lie apart in a rest pose (by more than 2 kPartedShare of its box), or weights together
-  /// with Outside::identity; Cancelled.
+  /// `source_rest` and `target_rest` are N x 3. `selected` are rows of the target's `triangles`
+  /// (M x 3). With weights, these are the triangles with a corner of weight above 0.
+  ///
+  /// Throws MismatchError if vertex counts differ. Throws std::invalid_argument if an option or
+  /// index is out of range, or if an anchor is given although vertices are fixed. Also throws
+  /// std::invalid_argument for weights together with Outside::identity. The same holds if welded
+  /// vertices lie apart in a rest pose, by more than 2 kPartedShare of its box. Throws
+  /// std::runtime_error if the triangles do not determine the vertices, and Cancelled.
   VertexTransfer(const Positions& source_rest, const Positions& target_rest,
                  const Triangles& triangles, const std::vector<int>& selected,
                  const VertexTransferOptions& options = {}, const Context& context = {});
@@ -151,20 +151,20 @@ class VertexTransfer {
   VertexTransfer(VertexTransfer&&) noexcept;
   VertexTransfer& operator=(VertexTransfer&&) noexcept;
 
-  /// Target poses for every frame, F x 3N. Throws MismatchError, Cancelled, std::runtime_error
-  /// where the system cannot be factored, and what reading throws.
+  /// Target poses for all frames, F x 3N. Throws MismatchError if the vertex counts differ, what
+  /// reading throws, and Cancelled.
   Frames frames(const FrameSource& performance, const Context& context = {}) const;
-  /// The same into a sink, up to sixteen frames at a time; to commit is left to the caller. Throws
-  /// what writing throws, too.
+  /// Writes the target poses to a sink, up to sixteen frames at a time. The caller commits. Throws
+  /// as frames() does, and what writing throws.
   void write_frames(const FrameSource& performance, FrameSink& sink,
                     const Context& context = {}) const;
 
-  /// Triangles of which two corners are one vertex: they take no part, and are none of the
-  /// degenerate ones.
+  /// Number of triangles with two welded corners. They take no part, and do not count as
+  /// degenerate.
   int collapsed_triangles() const;
   int degenerate_source_triangles() const;
   int degenerate_target_triangles() const;
-  /// Vertices that stay exactly at the target's rest pose (N), or follow.
+  /// Vertices (N) that stay exactly at the target's rest pose, or belong to a part that follows.
   const std::vector<bool>& fixed() const;
 
  private:
