@@ -198,7 +198,7 @@ mimetra_data* changed(Bytes& bytes, Handles& held, int kind) {
 /// All that can be asked of a value; it is written, too.
 void look_at(Bytes& bytes, mimetra_data* data, const fs::path& folder) {
   static constexpr std::array<const char*, 13> kExtensions = {
-      "/",     ".npy",  ".npz", ".pc2", ".mdd", ".h5",   ".glb",
+      "/",     ".npy", ".npz", ".pc2", ".mdd",  ".h5",    ".glb",
       ".gltf", ".obj", ".stl", ".csv", ".json", ".vtkhdf"};
   const char* json = nullptr;
   const mimetra_array* const* arrays = nullptr;

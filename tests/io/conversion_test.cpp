@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 using test::TemporaryFolder;
 
 /// Names of outputs, one for each format that keeps its vertices.
-const std::vector<std::string> kOutputs = {"ply/",  "obj/", "off/",  "a.npy",  "a.npz", "a.pc2",
-                                           "a.mdd", "a.h5", "a.glb", "a.gltf"};
+const std::vector<std::string> kOutputs = {"ply/",  "obj/",  "off/", "a.npy", "a.npz",
+                                           "a.pc2", "a.mdd", "a.h5", "a.glb", "a.gltf"};
 
 /// Largest differences of what came back: positions as a share of the longest side, seconds.
 struct Difference {

@@ -102,7 +102,7 @@ MeshSequence short_take() {
           frames};
 }
 
-const std::vector<std::string> kTakes = {"take/",   "take.npy", "take.npz",  "take.pc2",
+const std::vector<std::string> kTakes = {"take/",   "take.npy", "take.npz", "take.pc2",
                                          "take.h5", "take.glb", "take.mdd"};
 
 TEST(FailedAllocation, WhileWritingLeavesNothingUnderTheName) {

@@ -284,8 +284,7 @@ TEST(GltfText, TextureCoordinatesStayWhereSomeFacesHaveNone) {
   }
   // The corner opposite of the first face's: no face with texture coordinates is at its vertex.
   int farthest = 0;
-  while (std::ranges::find(corners.begin(), corners.begin() + 3, farthest) !=
-         corners.begin() + 3) {
+  while (std::ranges::find(corners.begin(), corners.begin() + 3, farthest) != corners.begin() + 3) {
     ++farthest;
   }
   for (std::size_t k = 3; k < corners.size(); ++k) {
@@ -309,8 +308,9 @@ TEST(GltfText, TextureCoordinatesThatNoCornerHasAreNotWritten) {
   poses.row(0) = Eigen::Map<const Eigen::RowVectorXd>(points.data(), 18);
   const MeshSequence sequence(std::move(faces), poses);
   write_sequence(sequence, folder / "a.glb");
-  EXPECT_TRUE(
-      read_sequence((folder / "a.glb").string()).sequence.connectivity().texture.coordinates.empty());
+  EXPECT_TRUE(read_sequence((folder / "a.glb").string())
+                  .sequence.connectivity()
+                  .texture.coordinates.empty());
   EXPECT_THAT(parts_left_out(sequence_format("a.glb")->holds, sequence), testing::IsEmpty());
 }
 

@@ -110,8 +110,8 @@ TEST_F(Weights, WithTimecodesThatRepeatOrFallBackNameTheLine) {
   EXPECT_THAT(message_of(coded({"10:00:00:01", "10:00:00:02", "10:00:00:02"})),
               HasSubstr("line 4: the timecode 10:00:00:02 is not later than the one before"));
   EXPECT_THAT(message_of(coded({"10:00:01:01", "10:00:00:02"})), HasSubstr("line 3"));
-  for (const char* code : {"10:00:00", "25:00:00:01", "a", "", "10:61:00:01", "10:00:00:01x",
-                           "10:00:00;01"}) {
+  for (const char* code :
+       {"10:00:00", "25:00:00:01", "a", "", "10:61:00:01", "10:00:00:01x", "10:00:00;01"}) {
     EXPECT_THAT(message_of(coded({code})), HasSubstr("line 2: expected a timecode HH:MM:SS:FF"));
   }
 }
