@@ -277,6 +277,10 @@ class CgalComponent {
   Eigen::VectorXd distances(const std::vector<VertexIndex>& sources) const {
     std::unique_ptr<Query> query = idle_query();
     Eigen::VectorXd result = query->distances(sources);
+    {
+      const std::lock_guard lock(mutex_);
+      idle_.push_back(std::move(query));
+    }
     // CGAL starts from the largest double and compares it with values that may be NaN.
     if (!(result.maxCoeff() < std::numeric_limits<double>::max())) {
       throw MismatchError("the heat from vertex " +
@@ -284,8 +288,6 @@ class CgalComponent {
                           " fades before it has reached all of its component, as after some 700 "
                           "edges; use distances by heat");
     }
-    const std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(query));
     return result;
   }
 
