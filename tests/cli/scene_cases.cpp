@@ -117,11 +117,11 @@ void add_gltf_cases(std::vector<BadInput>& all) {
 /// Named for what they are, with a way out.
 void add_usd_cases(std::vector<BadInput>& all) {
   const auto usda = [](const std::string& name) { return file(name, "#usda 1.0\n"); };
-  add_case(all, "of_another_kind", "usd", usda("s.usda"), "info s.usda", 3,
+  add_case(all, "as_a_sequence", "usd", usda("s.usda"), "info s.usda", 3,
            {"s.usda", "a USD scene", ".glb"});
-  add_case(all, "of_another_kind", "usd", usda("s.usdc"), "transfer head s.usdc -o out.npy", 3,
+  add_case(all, "as_a_target", "usd", usda("s.usdc"), "transfer head s.usdc -o out.npy", 3,
            {"s.usdc", "a USD scene", ".glb"});
-  add_case(all, "of_another_kind", "usd", usda("take.usda"),
+  add_case(all, "as_weights", "usd", usda("take.usda"),
            "convert head --weights take.usda -o out.npy", 3,
            {"take.usda", "a USD scene", ".csv", ".json"});
 }

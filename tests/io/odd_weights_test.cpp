@@ -158,30 +158,6 @@ TEST_F(OddWeights, WhoseTimesRepeatNameThem) {
               HasSubstr("row 1: times do not ascend: 0.25 is not later than the 0.5"));
 }
 
-TEST_F(OddWeights, OfDropFrameTimecodesWrittenWithColonsAreNoted) {
-  const auto coded = [](const std::vector<std::string>& codes) {
-    std::string text = "Timecode,BlendShapeCount,a\n";
-    for (const std::string& code : codes) text += code + ",61,0.5\n";
-    return text;
-  };
-  std::vector<std::string> codes = {"10:58:58:29"};
-  for (int frame = 0; frame < 30; ++frame) {
-    codes.push_back("10:58:59:" + std::string(frame < 10 ? "0" : "") + std::to_string(frame));
-  }
-  const auto with = [&](const std::string& code) {
-    std::vector<std::string> all = codes;
-    all.push_back(code);
-    return read(coded(all)).notes;
-  };
-  EXPECT_THAT(with("10:59:00:02"), ElementsAre(HasSubstr("write ';' before their frames")));
-  EXPECT_THAT(with("10:59:00:00"), testing::IsEmpty());
-  // More was lost than numbers are left out.
-  EXPECT_THAT(with("10:59:00:05"), testing::IsEmpty());
-  // One minute has all numbers.
-  codes.insert(codes.begin(), {"10:57:59:29", "10:58:00:00"});
-  EXPECT_THAT(with("10:59:00:02"), testing::IsEmpty());
-}
-
 TEST_F(OddWeights, OfShapesOfANodeMatchWithoutIt) {
   const WeightTrack track = read("jawOpen,mouthSmileLeft\n0.5,1\n");
   EXPECT_THAT(match_weights(track, {"blendShape1.jawOpen", "face.mouthSmile_L", "smile.L"}).column,
