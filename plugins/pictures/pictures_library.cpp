@@ -1,4 +1,5 @@
-// The one symbol of libmimetra_pictures: libmimetra_c's operations, and those that draw.
+// Defines the only symbol of libmimetra_pictures: the operations of libmimetra_c, and those that
+// draw.
 
 #include "plugins/c/interface.h"
 #include "plugins/c/plugins.h"

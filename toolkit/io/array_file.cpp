@@ -21,7 +21,8 @@ namespace {
 
 constexpr std::size_t kVersionAt = 6;
 
-/// The text of the header's dictionary. Versions 2 and 3 have a longer length field.
+/// Returns the text of the header's dictionary and sets `data` to its end. Versions 2 and 3 have a
+/// longer length field.
 std::string_view dictionary(const std::string& path, std::string_view bytes, std::size_t& data) {
   constexpr std::string_view kMagic = "\x93NUMPY";
   if (bytes.substr(0, kMagic.size()) != kMagic) throw IoError(path, "is no NumPy array");
@@ -42,7 +43,7 @@ std::string_view dictionary(const std::string& path, std::string_view bytes, std
   return bytes.substr(start, length);
 }
 
-/// What follows `'key':` in a Python dictionary.
+/// Returns the text that follows `'key':` in a Python dictionary.
 std::string_view value_of(const std::string& path, std::string_view text, const std::string& key) {
   for (const char quote : {'\'', '"'}) {
     const std::size_t at = text.find(quote + key + quote);
@@ -180,7 +181,7 @@ std::string npy_header_bytes(std::string_view type, const std::vector<std::size_
 
 namespace {
 
-/// The values in the file's order.
+/// Decodes the values in the file's order.
 void decode(const char* bytes, const NpyHeader& header, std::span<double> values) {
   const bool is_signed = header.kind == 'i';
   if (header.kind == 'f') {
@@ -201,7 +202,7 @@ void decode(const char* bytes, const NpyHeader& header, std::span<double> values
   }
 }
 
-/// Fortran order has the first index fastest; here the last one is.
+/// Reorders values from Fortran order (first index fastest) to C order (last index fastest).
 std::vector<double> in_c_order(const std::vector<double>& values,
                                const std::vector<std::size_t>& shape) {
   std::vector<double> ordered(values.size());
@@ -230,7 +231,7 @@ NumericArray npy_values(const std::string& path, std::string_view bytes, const N
 
 namespace {
 
-/// Frames, and coordinates of one, are counted by ints.
+/// Frames and the coordinates of a frame are counted by ints.
 int counted(const fs::path& path, std::size_t size) {
   constexpr std::size_t kMost = std::numeric_limits<int>::max() / 3;
   if (size <= kMost) return static_cast<int>(size);
@@ -238,7 +239,7 @@ int counted(const fs::path& path, std::size_t size) {
                                    std::to_string(kMost) + " at most");
 }
 
-/// Three coordinates are one vertex, and more a frame.
+/// A 2-D array with 3 columns is one frame; with more columns, each row is a frame.
 bool is_one_frame(const NpyHeader& header) {
   return header.shape.size() == 2 && header.shape[1] == 3;
 }
@@ -262,7 +263,7 @@ class StoredArray : public StoredPointCache {
   }
 };
 
-/// One that cannot be read in parts.
+/// An array that cannot be read in parts.
 class LoadedArray : public PointCache {
  public:
   LoadedArray(const fs::path& path, std::string_view bytes) : PointCache(path) {

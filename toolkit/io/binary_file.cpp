@@ -22,15 +22,15 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMostOfAPipe = std::size_t{1} << 30;
-/// statfs(2): PIPEFS_MAGIC, where pipes without a name are.
+/// PIPEFS_MAGIC of statfs(2): the file system of pipes without a name.
 constexpr long kPipesWithoutName = 0x50495045;
 
-/// Why the last call to the operating system failed.
+/// Reason why the last system call failed.
 std::string last_reason() {
   return std::error_code(errno, std::generic_category()).message();
 }
 
-/// Why this is not read; empty for a regular file.
+/// Reason why a file of this type is not read; empty for a regular file.
 std::string other_type(const struct stat& status) {
   if (S_ISREG(status.st_mode)) return "";
   if (S_ISDIR(status.st_mode)) return "is a folder, expected a file";
@@ -43,7 +43,7 @@ std::string reading_problem() {
   return "cannot be read: " + last_reason();
 }
 
-/// True for what Git LFS leaves where the file itself was not fetched.
+/// True for the pointer that Git LFS leaves in place of a file that was not fetched.
 bool is_lfs_pointer(int file) {
   constexpr std::string_view kBeginning = "version https://git-lfs";
   std::array<char, kBeginning.size()> bytes{};
@@ -96,8 +96,8 @@ std::size_t OpenedFile::next(char* to, std::size_t most) const {
 }
 
 std::string OpenedFile::rest() const {
-  // One byte more than the file has, to meet its end at the first reading. A pipe has no size, and
-  // some files of the system none that is true: they are read to their end, whatever it says.
+  // One byte more than the file has, so that the first pass reaches its end. Pipes have no size,
+  // and some system files report a wrong one. Both are read until they end.
   constexpr std::size_t kBlock = 1 << 16;
   struct stat status;
   const bool has_size = !is_pipe_ && fstat(descriptor_, &status) == 0 && status.st_size > 0;
@@ -126,8 +126,8 @@ void require_regular_file(const std::filesystem::path& path) {
 
 namespace {
 
-/// Calls `transfer`, which returns a number of bytes or -1, until `bytes` are done or none come.
-/// Returns how many are done; -1 with errno for an error.
+/// Calls `transfer`, which returns a number of bytes or -1, until all `bytes` are transferred or it
+/// returns 0. Returns the number transferred, or -1 with errno.
 template <typename Transfer>
 ssize_t repeated(std::size_t bytes, const Transfer& transfer) {
   std::size_t done = 0;
@@ -219,7 +219,8 @@ namespace {
 
 constexpr std::string_view kTemporary = ".tmp";
 
-/// NAME of .NAME.0123456789abcdef.tmp, of which NAME may again be such a name.
+/// Returns NAME for .NAME.0123456789abcdef.tmp. NAME may itself be such a name and is then
+/// shortened as well.
 std::string without_temporary(std::string name) {
   while (name.starts_with('.') && name.ends_with(kTemporary)) {
     const std::size_t number = name.rfind('.', name.size() - kTemporary.size() - 1);
@@ -229,7 +230,8 @@ std::string without_temporary(std::string name) {
   return name;
 }
 
-/// That nobody guesses: in a container every process has the number 1.
+/// Random text for names that nobody can guess. Process numbers are predictable: in a container
+/// every program has number 1.
 std::string unguessable() {
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::random_device random;
@@ -238,7 +240,7 @@ std::string unguessable() {
   return text;
 }
 
-/// 0, or why it could not be made.
+/// Creates an empty file or folder. Returns 0 or the errno.
 int make(const fs::path& path, OutputKind kind) {
   if (kind == OutputKind::folder) return mkdir(path.c_str(), 0777) == 0 ? 0 : errno;
   const int file = open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_NOFOLLOW | O_CLOEXEC, 0666);
@@ -257,7 +259,7 @@ fs::path make_temporary_beside(const fs::path& target, OutputKind kind, std::err
     reason = make(path, kind);
   }
   error = std::error_code(reason, std::generic_category());
-  // Not copied: what was made must not be forgotten where memory ends.
+  // Returning a copy could run out of memory and leave the new file behind.
   if (error) path.clear();
   return path;
 }

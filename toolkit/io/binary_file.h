@@ -7,16 +7,16 @@
 #include <string_view>
 #include <system_error>
 
-/// Files as the operating system has them: open for reading and writing, in parts and from several
-/// threads where wanted, and the temporary names of outputs.
+/// Files of the operating system, read and written in parts and by several threads, and the
+/// temporary names of outputs.
 namespace mimetra {
 
-/// A regular file, or a pipe of the process such as bash's `<(command)`, open for reading. Nothing
-/// else is waited for: what a person names by mistake, or a list names, may never end.
+/// A regular file, or a pipe of the process such as bash's `<(command)`, open for reading. Other
+/// kinds of files are refused, because reading them could wait forever.
 class OpenedFile {
  public:
-  /// Throws IoError for what is not there or cannot be read, for folders, devices and sockets, for
-  /// named pipes, and for pointers of Git LFS.
+  /// Throws IoError if the file is missing, cannot be read, or is a folder, a device, a socket, a
+  /// named pipe or a pointer of Git LFS.
   explicit OpenedFile(const std::filesystem::path& path);
   ~OpenedFile();
   OpenedFile(const OpenedFile&) = delete;
@@ -24,12 +24,12 @@ class OpenedFile {
 
   int descriptor() const { return descriptor_; }
   bool is_pipe() const { return is_pipe_; }
-  /// All that there is, from here on. Throws IoError; of a pipe also where more than 1 GB comes;
-  /// Cancelled where a signal comes while nothing else does.
+  /// Returns all bytes from the current position on. Throws IoError, also if a pipe delivers more
+  /// than 1 GB. Throws Cancelled if a signal arrives while it waits for data.
   std::string rest() const;
 
  private:
-  /// Puts the next bytes to `to`; 0 at the end.
+  /// Reads up to `most` bytes to `to`. Returns their number, 0 at the end.
   std::size_t next(char* to, std::size_t most) const;
 
   std::string path_;
@@ -37,10 +37,11 @@ class OpenedFile {
   bool is_pipe_ = false;
 };
 
-/// Throws as OpenedFile, and for pipes: before a library opens a file by its name.
+/// Throws IoError as OpenedFile does, and also for pipes. Call it before a library opens the file
+/// by its name.
 void require_regular_file(const std::filesystem::path& path);
 
-/// Bytes of which parts are read, from several threads.
+/// Bytes that several threads may read in parts.
 class InputBytes {
  public:
   InputBytes() = default;
@@ -49,14 +50,15 @@ class InputBytes {
   InputBytes& operator=(const InputBytes&) = delete;
 
   virtual std::size_t size() const = 0;
-  /// Copies `bytes` bytes from `offset` on. Throws IoError, also where they end before.
+  /// Copies `bytes` bytes from `offset` on. Throws IoError, also if the bytes end too early.
   virtual void read(std::size_t offset, char* to, std::size_t bytes) const = 0;
 };
 
 /// An ordinary file that is open for reading.
 class InputFile : public InputBytes {
  public:
-  /// True for a file whose size is that of its content: no pipe, and nothing that seems empty.
+  /// True for a regular file that is not empty. Pipes have no size, and some system files report 0
+  /// although they have content.
   static bool has_size(const std::filesystem::path& path);
 
   /// Throws IoError.
@@ -71,7 +73,8 @@ class InputFile : public InputBytes {
   std::size_t size_ = 0;
 };
 
-/// A file that is written anew. Errors name what PendingOutput makes of it.
+/// A new file, or a file whose content is replaced. Errors show the name that PendingOutput will
+/// give to it.
 class OutputFile {
  public:
   /// Throws OutputError.
@@ -82,9 +85,9 @@ class OutputFile {
 
   /// Appends the pieces, one after the other. Throws OutputError.
   void write(std::initializer_list<std::string_view> pieces);
-  /// Writes to the place `offset`. Throws OutputError.
+  /// Throws OutputError.
   void write_at(std::size_t offset, std::string_view content) const;
-  /// Throws OutputError for what the disk refuses only now.
+  /// Throws OutputError, because some disks report a failed write only now.
   void close();
 
  private:
@@ -96,14 +99,14 @@ class OutputFile {
 
 enum class OutputKind { file, folder };
 
-/// Makes an empty file or folder beside `target`, under a hidden name that was free: nothing that
-/// an earlier run or anybody else has put there is used or followed. Where it cannot be made,
-/// `error` says why.
+/// Creates an empty file or folder beside `target`, under a hidden, unused name. Existing files,
+/// folders and links are neither used nor followed. If it fails, returns an empty path and sets
+/// `error`.
 std::filesystem::path make_temporary_beside(const std::filesystem::path& target, OutputKind kind,
                                             std::error_code& error);
 
-/// What `path` is called once it is committed: without such names, which nobody asked for. Messages
-/// use this name.
+/// Name of `path` after it is committed, for messages: temporary names are replaced by their
+/// targets.
 std::filesystem::path committed_name(const std::filesystem::path& path);
 
 }  // namespace mimetra

@@ -7,13 +7,12 @@
 #include <string>
 #include <type_traits>
 
-/// Numbers in files, in either byte order. Internal to the readers and writers.
+/// Binary numbers in files, in either byte order. Internal to the readers and writers.
 namespace mimetra {
 
-/// Deflate makes no more bytes than this of one.
+/// Most bytes that one byte of a deflate stream can expand to.
 inline constexpr std::uint64_t kMostInflated = 1032;
 
-/// An unsigned integer of so many bytes.
 template <std::size_t Bytes>
 using UnsignedOf = std::conditional_t<
     Bytes == 1, std::uint8_t,
@@ -30,7 +29,7 @@ Unsigned byte_swapped(Unsigned value) {
   return swapped;
 }
 
-/// The number that starts at `at`. \pre sizeof(Number) bytes are there
+/// Returns the number stored at `at`. \pre sizeof(Number) bytes are readable
 template <typename Number>
 Number number_at(const char* at, std::endian order) {
   UnsignedOf<sizeof(Number)> bits;
@@ -39,7 +38,7 @@ Number number_at(const char* at, std::endian order) {
   return std::bit_cast<Number>(bits);
 }
 
-/// Numbers that stand one after the other, as doubles. \pre values.size() of them are there
+/// Decodes consecutive numbers to doubles. \pre values.size() numbers are readable
 template <typename Stored>
 void decode_numbers(const char* stored, std::endian order, std::span<double> values) {
   const auto decode_in = [stored, values](auto given) {
@@ -47,7 +46,7 @@ void decode_numbers(const char* stored, std::endian order, std::span<double> val
       values[i] = static_cast<double>(number_at<Stored>(stored + i * sizeof(Stored), given()));
     }
   };
-  // With an order that is known when the loop is compiled, it runs at the speed of memory.
+  // The loop runs at the speed of memory only if the compiler knows the order.
   if (order == std::endian::native) {
     decode_in([] { return std::endian::native; });
   } else {
@@ -55,7 +54,7 @@ void decode_numbers(const char* stored, std::endian order, std::span<double> val
   }
 }
 
-/// Puts a number in a byte order. \pre there is room for sizeof(Number) bytes
+/// Writes a number to `at` in a byte order. \pre sizeof(Number) bytes are writable
 template <typename Number>
 void put_number_at(char* at, Number value, std::endian order) {
   auto bits = std::bit_cast<UnsignedOf<sizeof(Number)>>(value);
@@ -63,7 +62,6 @@ void put_number_at(char* at, Number value, std::endian order) {
   std::memcpy(at, &bits, sizeof bits);
 }
 
-/// Appends a number in a byte order.
 template <typename Number>
 void append_bytes_of(std::string& bytes, Number value, std::endian order) {
   char raw[sizeof value];
@@ -71,7 +69,7 @@ void append_bytes_of(std::string& bytes, Number value, std::endian order) {
   bytes.append(raw, sizeof raw);
 }
 
-/// The same, least significant byte first.
+/// Write and append a number, least significant byte first.
 template <typename Number>
 void put_little_endian(char* at, Number value) {
   put_number_at(at, value, std::endian::little);

@@ -25,7 +25,6 @@ std::string component_name(int k) {
   return text;
 }
 
-/// What a file holds as matrices and options.
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& path) : file_(path) {}
@@ -33,7 +32,7 @@ class Reader {
   [[noreturn]] void fail(const std::string& message) const { file_.fail(message); }
   bool has(const std::string& name) const { return file_.has(name); }
 
-  /// A list of numbers is one column.
+  /// Reads a matrix; a list of numbers becomes one column.
   RowMatrix read(const std::string& name) const {
     const Hdf5Dataset set = file_.dataset(name);
     const auto& shape = set.shape();
@@ -45,7 +44,6 @@ class Reader {
     return values;
   }
 
-  /// The same of integers.
   Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> read_indices(
       const std::string& name) const {
     const RowMatrix values = read(name);
@@ -127,7 +125,7 @@ void read_options(const Reader& reader, Components& components) {
   if (reader.attribute("last_iterate", false) != 0) options.returned = ReturnedIterate::last;
 }
 
-/// Older files and those of the reference say nothing of it.
+/// Reads attributes that older files and the reference implementation's files lack.
 void read_convergence(const Reader& reader, Components& components) {
   components.iteration = reader.whole_attribute("iteration", 0);
   if (components.iteration > static_cast<int>(components.energies.size())) {
@@ -139,7 +137,7 @@ void read_convergence(const Reader& reader, Components& components) {
   }
 }
 
-/// The vertex that each component moves most; -1 where it moves none.
+/// Vertex that each component moves most; -1 if it moves none.
 std::vector<VertexIndex> strongest_vertices(const Frames& displacements) {
   std::vector<VertexIndex> centers;
   for (Eigen::Index k = 0; k < displacements.rows(); ++k) {
@@ -182,7 +180,7 @@ void read_components_of(const Reader& reader, Components& components) {
 void read_optional_parts(const Reader& reader, Components& components) {
   const auto count = components.displacements.rows(), vertices = components.rest.rows();
   if (reader.has("C")) {
-    // Exact displacements: rest + component - rest has lost their last digits.
+    // 'C' is exact; rest + component - rest has lost the last digits.
     components.displacements = reader.read("C");
     if (components.displacements.rows() != count ||
         components.displacements.cols() != 3 * vertices) {

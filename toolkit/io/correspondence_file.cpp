@@ -15,11 +15,12 @@ namespace {
 constexpr const char* kCorrespondenceForm =
     R"({"source": {..}, "target": {..}, "partners": [[triangle, weight, ..], ..]})";
 
-/// Weights of a triangle may miss 1 by this much: somebody wrote them with a few digits.
+/// Allowed difference between 1 and the sum of a triangle's weights, for files written by hand with
+/// a few digits.
 constexpr double kWeightTolerance = 1e-3;
 
-/// FNV-1a, 64 bits, of the number of vertices and the corners of all triangles, as hexadecimal
-/// digits: the same on every machine.
+/// Returns a hash of the number of vertices and the corners of all triangles, as hexadecimal digits
+/// (FNV-1a, 64 bits). It is the same on every machine.
 std::string faces_hash(const Connectivity& mesh) {
   std::uint64_t hash = 0xcbf29ce484222325U;
   const auto add = [&hash](int number) {

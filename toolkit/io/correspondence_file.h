@@ -7,13 +7,14 @@
 
 namespace mimetra {
 
-/// The content of a .json file: the pairs of triangles, each target triangle's distance from the
-/// deformed source, and a hash of either mesh's faces, so that pairs of other meshes are refused.
+/// Text of a .json file: the pairs of triangles, each target triangle's distance from the deformed
+/// source, and hashes of both meshes' faces. The hashes let the reader refuse pairs of other
+/// meshes.
 std::string correspondence_json(const Correspondence& pairs, const Connectivity& source,
                                 const Connectivity& target);
 
-/// Reads such a file for these meshes; weights and distances are those that were written, bit by
-/// bit. Throws IoError; MismatchError where it was made for other faces.
+/// Reads pairs of triangles for these meshes. Weights and distances equal the written ones exactly.
+/// Throws IoError, and MismatchError if the file was made for other faces.
 Correspondence read_correspondence(const std::filesystem::path& path, const Connectivity& source,
                                    const Connectivity& target);
 

@@ -19,7 +19,7 @@ std::string_view without_blanks(std::string_view text) {
   return text;
 }
 
-/// The separator that ends the first field; npos for the last one.
+/// Position of the separator that ends the first field; npos for the last field.
 std::size_t end_of_field(std::string_view line, char separator) {
   const auto first = line.find_first_not_of(" \t");
   bool quoted = first != std::string_view::npos && line[first] == '"';
@@ -31,7 +31,7 @@ std::size_t end_of_field(std::string_view line, char separator) {
   return std::string_view::npos;
 }
 
-/// What separates the names of a line: what ends the first one.
+/// Returns the separator that ends the first name of a line.
 char separator_of(std::string_view names) {
   return end_of_field(names, ';') < end_of_field(names, ',') ? ';' : ',';
 }
@@ -49,7 +49,8 @@ std::vector<std::string_view> fields_of(std::string_view line, char separator) {
   }
 }
 
-/// With a decimal point, or, where fields are not separated by commas, a decimal comma.
+/// Parses a finite number with a decimal point. If commas do not separate the fields, a decimal
+/// comma is accepted as well.
 std::optional<double> number_in(std::string_view field, char separator) {
   std::string with_point(field);
   if (separator != ',' && field.find('.') == std::string_view::npos) {
@@ -62,16 +63,17 @@ std::optional<double> number_in(std::string_view field, char separator) {
   return value;
 }
 
-/// Takes away the empty field that a separator at the end of a line makes; false without one.
+/// Removes the empty field that a separator at the end of a line makes. Returns false if there is
+/// none.
 bool drop_last_if_empty(std::vector<std::string_view>& fields) {
   const bool ends_in_separator = fields.size() > 1 && fields.back().empty();
   if (ends_in_separator) fields.pop_back();
   return ends_in_separator;
 }
 
-/// Whether a first line is a row already, of as many fields as `names`: numbers, some of which may
-/// be missing, or more than one NaN, as where a track begins with a lost face: no two names are
-/// that.
+/// True if a line is a row of as many fields as `names`, each a number, NaN or empty. Without any
+/// number it needs at least two NaN, as in a track that begins with a lost face. A header never has
+/// two columns named NaN.
 bool is_row_of(const std::vector<std::string_view>& names, std::string_view line, char separator) {
   auto fields = fields_of(line, separator);
   if (fields.size() > names.size()) drop_last_if_empty(fields);

@@ -7,64 +7,67 @@
 
 #include "toolkit/io/text_cursor.h"
 
-/// Comma-separated values: a line of column names, then rows of as many fields. For readers and
-/// writers. Where the names are separated by ';', as where commas are decimal, so are the rows.
+/// Comma-separated values, for readers and writers: a line of column names, then rows with as many
+/// fields. If ';' separates the names, it also separates the fields, and numbers may have decimal
+/// commas.
 namespace mimetra {
 
-/// `text` as a field: in quotation marks where it would be read as something else.
+/// Returns `text` as a field: in quotation marks if it contains ',', ';' or '"' or starts with '#'.
 std::string csv_field(const std::string& text);
 
-/// The text of a field as CsvReader has it.
+/// Returns the text of a field of CsvReader, with doubled quotation marks undone.
 std::string text_of_csv(std::string_view field);
 
-/// Reads a file row by row. Lines end in LF or CRLF; those that are blank or begin with '#' are
-/// passed over, and so is a separator that ends them. The names may stand behind a '#', as NumPy
-/// writes them, before a line of two numbers and more.
+/// Reads a file row by row. Lines end in LF or CRLF. Blank lines, lines that begin with '#' and a
+/// separator at the end of a line are skipped. As in NumPy's files, the names may be in a comment
+/// before the first row. That row must then have as many fields, at least two, and contain numbers.
 class CsvReader {
  public:
-  /// Reads the column names. Throws IoError where there are none.
+  /// Reads the column names. Throws IoError if there are none.
   explicit CsvReader(const std::filesystem::path& path);
   CsvReader(const CsvReader&) = delete;
   CsvReader& operator=(const CsvReader&) = delete;
 
-  /// Without the blanks and quotation marks around them; those inside stay doubled.
+  /// Column names, without surrounding blanks and quotation marks; quotation marks inside stay
+  /// doubled.
   const std::vector<std::string_view>& names() const { return names_; }
 
-  /// Whether the last fields of a row may be missing, and are empty then.
+  /// Whether a row may end early; its missing fields are empty then.
   enum class Rows { are_whole, may_end_early };
 
-  /// Moves to the next row; false where there is none. Throws IoError for one that has not a field
-  /// for each name.
+  /// Moves to the next row. Returns false at the end of the file. Throws IoError if the number of
+  /// fields does not match the names.
   bool next_row(Rows rows = Rows::are_whole);
 
-  /// A field of the row, as names() are.
+  /// Field of the row, in the form of names().
   std::string_view field(std::size_t column) const { return row_[column]; }
-  /// False for one that the row ends before.
+  /// False if the row ends before this column.
   bool is_given(std::size_t column) const { return column < given_; }
-  /// Throws IoError where the field is not a finite number. Behind ';' it may have a decimal comma.
+  /// Number in a field, with a decimal point or, in files with ';', a decimal comma. Throws IoError
+  /// if the field is not a finite number.
   double number(std::size_t column) const;
 
-  /// Of the row, or of the names before the first one; from 1.
+  /// Line of the row, from 1. Before the first row: the line that ended the search for the names.
   int line() const { return line_; }
 
-  /// Throws IoError with the path and the line of the row, or of the names before the first one.
+  /// Throws IoError with the path and line().
   [[noreturn]] void fail(const std::string& message) const;
 
  private:
   [[noreturn]] void fail_of_size() const;
-  /// The next line that is neither blank nor a comment; empty at the end of the file.
+  /// Next line that is neither blank nor a comment; empty at the end of the file.
   std::string_view next_line();
 
   std::string path_;
   std::string bytes_;
   TextCursor text_;
   int line_ = 0;
-  std::string_view comment_;     ///< the last one that was passed over
-  std::string_view unread_row_;  ///< the first line, where the names stand in a comment
+  std::string_view comment_;     ///< last skipped comment
+  std::string_view unread_row_;  ///< first row, if the names are in a comment
   char separator_ = ',';
   std::vector<std::string_view> names_, row_;
   bool names_end_in_separator_ = false;
-  std::size_t given_ = 0;  ///< fields of the row that its line has
+  std::size_t given_ = 0;  ///< number of fields on the row's line
 };
 
 }  // namespace mimetra

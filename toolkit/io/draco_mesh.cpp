@@ -14,11 +14,12 @@
 namespace mimetra {
 namespace {
 
-/// As `Number`: integers to integers, since Draco would scale some of them on the way to others.
+/// Values of an attribute (points x components), decoded as `Number`. Integers are decoded as
+/// integers, because Draco would scale some of them when it converts them to floats.
 template <typename Number>
 Frames draco_values(const std::string& path, const std::string& what, const draco::Mesh& mesh,
                     const draco::PointAttribute& attribute, int components) {
-  // Its bytes would be taken for truth values, whatever they are.
+  // Draco would load the bytes as bool, whatever their values are.
   const bool is_of_numbers = attribute.data_type() != draco::DT_BOOL;
   Frames values(mesh.num_points(), components);
   Number element[4] = {};
@@ -78,7 +79,7 @@ DracoMesh draco_parts(const std::string& path, const std::string& what, const dr
   return parts;
 }
 
-/// A count of Draco's stream: seven bits a byte, the lowest first.
+/// Takes a count off Draco's stream: seven bits a byte, the lowest first.
 std::uint64_t take_count(std::string_view& bytes) {
   std::uint64_t count = 0;
   for (int shift = 0; shift < 63 && !bytes.empty(); shift += 7) {
@@ -90,28 +91,28 @@ std::uint64_t take_count(std::string_view& bytes) {
   return count;
 }
 
-/// What the library takes for granted: it also reads versions from before glTF's, in which damage
-/// goes further, and takes memory for as many faces as a mesh says it has.
-/// [KHR_draco_mesh_compression; Draco bitstream 2.2]
+/// Checks what Draco does not. Draco also reads versions older than glTF's, in which damage does
+/// more harm, and allocates as many faces as the file claims. [KHR_draco_mesh_compression; Draco
+/// bitstream 2.2]
 void check_header(const std::string& path, const std::string& what, std::string_view bytes) {
   constexpr std::size_t kHeader = 11, kMajor = 5, kMinor = 6, kMethod = 8, kFlags = 10;
-  if (bytes.size() < kHeader) return;  // the library says that it is cut
+  if (bytes.size() < kHeader) return;  // Draco reports the truncation
   const int major = static_cast<unsigned char>(bytes[kMajor]);
   const int minor = static_cast<unsigned char>(bytes[kMinor]);
   if (major < 2 || (major == 2 && minor < 2)) {
     throw IoError(path, what + " cannot be decompressed: it has version " + std::to_string(major) +
                             '.' + std::to_string(minor) + " of Draco's stream, expected 2.2");
   }
-  constexpr int kHasMetadata = 0x80;  // which comes first
+  constexpr int kHasMetadata = 0x80;  // metadata precede the counts
   if ((bytes[kFlags] & kHasMetadata) != 0) return;
   const std::size_t size = bytes.size();
   const bool is_edgebreaker = bytes[kMethod] == 1;
   bytes.remove_prefix(kHeader);
   if (is_edgebreaker) {
-    bytes.remove_prefix(std::min<std::size_t>(1, bytes.size()));  // how it goes from face to face
-    take_count(bytes);                                            // vertices
+    bytes.remove_prefix(std::min<std::size_t>(1, bytes.size()));  // traversal method
+    take_count(bytes);                                            // number of vertices
   }
-  // As much memory for a face as the positions of a vertex are.
+  // The limit counts a face like the position of a vertex.
   check_scene_size(path + ": " + what, static_cast<double>(take_count(bytes)), 1, size);
 }
 

@@ -13,7 +13,8 @@ namespace mimetra {
 
 namespace {
 
-/// Takes numbers off the front of a file's bytes and checks every count against what is left.
+/// Takes numbers off the front of a file's bytes and checks every count against the bytes that are
+/// left.
 class BinaryCursor {
  public:
   explicit BinaryCursor(const std::filesystem::path& path)
@@ -38,7 +39,7 @@ class BinaryCursor {
     return value;
   }
 
-  /// TEX: uint64 n, then n x 2 float64, of which v points down as the rows of a picture do.
+  /// TEX: uint64 n, then n x 2 float64. v points down, like the rows of a picture, and is flipped.
   std::vector<Eigen::Vector2d> texture_coordinates() {
     const char* const what = "the texture coordinates";
     const auto count = number<std::uint64_t>(what);
@@ -130,8 +131,8 @@ ShapeModel read_shape(const std::filesystem::path& path) {
   return model;
 }
 
-/// The faces, with texture coordinates where there is one for each vertex; others are of no known
-/// vertices.
+/// Faces, with texture coordinates if there is one per vertex. Otherwise the file does not say
+/// which vertices the coordinates belong to.
 Connectivity textured_faces(const ShapeModel& model) {
   const int vertices = static_cast<int>(model.mean.rows());
   Connectivity connectivity = Connectivity::from_triangles(vertices, model.triangles);
@@ -164,7 +165,7 @@ ShapeBasis read_expressions(const std::filesystem::path& path, Eigen::Index coor
   return basis;
 }
 
-/// The latest version of the model file that eos writes.
+/// Latest version of the model file that eos writes.
 constexpr std::uint32_t kLatestVersion = 4;
 
 }  // namespace

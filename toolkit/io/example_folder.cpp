@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 constexpr const char* kWeightFile = "examples.csv";
 constexpr const char* kMeshColumn = "mesh";
 
-/// In natural order.
+/// Mesh files of the folder, in natural order.
 std::vector<fs::path> example_files(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
@@ -49,7 +49,6 @@ void check_shape_names(const std::vector<ExampleShape>& shapes) {
   }
 }
 
-/// Moves to the rows of examples.csv.
 void read_example_rows(CsvReader& csv, ExampleFolder& folder) {
   if (csv.names().front() != kMeshColumn || csv.names().size() < 2) {
     csv.fail(std::string("expected a first column '") + kMeshColumn +

@@ -9,27 +9,27 @@
 
 namespace mimetra {
 
-/// A mesh of a folder of examples.
 struct ExampleShape {
-  std::string name;  ///< its file's, without extension
+  std::string name;  ///< file name without extension
   std::filesystem::path path;
   Positions pose;  ///< N x 3
 };
 
-/// Poses of one face, and what is known of their weights.
+/// Poses of one face and the known weights of some of them.
 struct ExampleFolder {
-  std::vector<ExampleShape> shapes;  ///< in natural order of their names
-  /// Of examples.csv, a row for each of `weighted`; no names where there is none.
+  std::vector<ExampleShape> shapes;  ///< in natural order of their file names
+  /// Weights from examples.csv, one row for each of `weighted`; no names without such a file.
   WeightTrack weights = {};
   std::vector<std::string> weighted = {};
 };
 
-/// Reads the meshes of a folder, which are poses of the face that `expected` is the connectivity of
-/// and `expected_name` the name of, and `examples.csv` in it, whose first column `mesh` names a
-/// mesh and whose others are expressions.
+/// Reads the meshes of a folder and the `examples.csv` in it. All meshes are poses of one face with
+/// the connectivity `expected`, which messages call `expected_name`. The first column of
+/// examples.csv, `mesh`, contains names of meshes; the others are expressions.
 ///
-/// Throws IoError for a folder that holds no mesh, two of one name, or cannot be read, and for rows
-/// of examples.csv that name no mesh, or one twice; MismatchError for a mesh of other faces.
+/// Throws IoError if the folder cannot be read, contains no mesh or contains two of one name. Also
+/// throws it if a row or a column of examples.csv occurs twice, or a row's mesh is missing. Throws
+/// MismatchError if a mesh has other faces.
 ExampleFolder read_examples(const std::filesystem::path& folder, const Connectivity& expected,
                             const std::string& expected_name);
 

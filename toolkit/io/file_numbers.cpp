@@ -12,31 +12,31 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-using Series = std::pair<fs::path, std::string>;  ///< the folder, and what the names have in common
+using Series = std::pair<fs::path, std::string>;  ///< folder and series of numbered names
 
-/// Where the last digits in `stem` end; 0 where there are none.
+/// End of the last digits in `stem`; 0 if there are none.
 std::size_t end_of_digits(const std::string& stem) {
   const auto last = std::ranges::find_if(stem.rbegin(), stem.rend(), is_digit).base();
   return static_cast<std::size_t>(last - stem.begin());
 }
 
-/// Where the digits in `stem` begin that end at `last`; `last` where there are none.
+/// Start of the digits in `stem` that end at `last`; `last` if there are none.
 std::size_t begin_of_digits(const std::string& stem, std::size_t last) {
   std::size_t first = last;
   while (first > 0 && is_digit(stem[first - 1])) --first;
   return first;
 }
 
-/// Where a number with its sign begins whose digits begin at `first`.
+/// Start, including a sign, of the number whose digits begin at `first`.
 std::size_t begin_with_sign(const std::string& stem, std::size_t first) {
   const bool has_sign = first > 0 && stem[first - 1] == '-' &&
                         minus_is_sign(std::string_view(stem).substr(0, first - 1));
   return has_sign ? first - 1 : first;
 }
 
-/// None where it is too large to count.
+/// Parses an integer; none if it is too large to count.
 std::optional<long long> integer(const std::string& text) {
-  constexpr long long kMost = 4'000'000'000'000'000'000;  // differences are counted, too
+  constexpr long long kMost = 4'000'000'000'000'000'000;  // differences must not overflow
   long long value = 0;
   const char* const end = text.data() + text.size();
   const auto [last, error] = std::from_chars(text.data(), end, value);
@@ -44,20 +44,19 @@ std::optional<long long> integer(const std::string& text) {
   return value;
 }
 
-/// The stem with '*' in the place of what stands from `first` to `last`.
+/// Returns the file name with '*' in place of the characters from `first` to `last`.
 std::string series_of(const fs::path& file, std::size_t first, std::size_t last) {
   const std::string stem = file.stem().string();
   return stem.substr(0, first) + '*' + stem.substr(last) + lower_extension(file);
 }
 
-/// A number that may have decimals: "t_0.25.obj" as 0.25 of the series "t_*.obj".
+/// Name whose number may have decimals: "t_0.25.obj" is 0.25 of the series "t_*.obj".
 struct DecimalName {
   fs::path file;
   double value;
   bool has_point;
 };
 
-/// The names with a number of each series in a folder.
 std::map<Series, std::vector<DecimalName>> decimal_names(const std::vector<fs::path>& files) {
   std::map<Series, std::vector<DecimalName>> all;
   for (const fs::path& file : files) {
@@ -100,7 +99,7 @@ void sort_by_numbers(std::vector<fs::path>& files) {
     const std::string series = numbered(files[i]).series;
     if (!series.empty()) places[{files[i].parent_path(), series}].push_back(i);
   }
-  // Files of other series keep their places among those of this one.
+  // Files outside this series keep their places.
   for (const auto& [series, at] : places) {
     std::vector<fs::path> part;
     for (const std::size_t i : at) part.push_back(files[i]);

@@ -20,7 +20,7 @@ Json numbers_of(const Row& row) {
   return list;
 }
 
-/// Values of a parsed file, each with its place in it for messages.
+/// Reads values of a parsed file; errors contain the place of the value.
 class FitReader {
  public:
   explicit FitReader(const std::filesystem::path& path)

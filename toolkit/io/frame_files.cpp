@@ -19,7 +19,7 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-/// `%d`, `%4d` or `%04d` in a file's name.
+/// Position and width of `%d`, `%4d` or `%04d` in a file's name.
 struct NumberField {
   std::size_t begin;
   std::size_t end;
@@ -31,7 +31,7 @@ std::optional<NumberField> number_field(const std::string& name) {
   if (begin == std::string::npos) return std::nullopt;
   std::size_t at = begin + 1;
   std::size_t width = 0;
-  // No file name has more than 255 characters.
+  // File names have at most 255 characters.
   for (; at < name.size() && is_digit(name[at]) && width < 256; ++at) {
     width = 10 * width + static_cast<std::size_t>(name[at] - '0');
   }
@@ -39,8 +39,8 @@ std::optional<NumberField> number_field(const std::string& name) {
   return NumberField{begin, at + 1, width};
 }
 
-/// The digits between `before` and `after` in a name that has nothing else between them, but a '-'
-/// where it is a sign (file_numbers.h); else "".
+/// Returns the digits between `before` and `after` in a name, without a '-' that is a sign
+/// (file_numbers.h). Returns "" if anything else is between them.
 std::string digits_between(const std::string& name, const std::string& before,
                            const std::string& after) {
   if (name.size() <= before.size() + after.size() || !name.starts_with(before) ||
@@ -52,18 +52,18 @@ std::string digits_between(const std::string& name, const std::string& before,
   return std::ranges::all_of(digits, is_digit) ? digits : std::string();
 }
 
-/// True where printf would write `name` for some number.
+/// True if printf would write `name` for some number.
 bool matches(const std::string& name, const std::string& pattern, const NumberField& field) {
   const std::string digits =
       digits_between(name, pattern.substr(0, field.begin), pattern.substr(field.end));
   if (digits.empty()) return false;
   const bool padded = digits.size() > 1 && digits[0] == '0';
-  // printf counts the sign, others do not.
+  // printf includes the sign in the width; other programs do not.
   const std::size_t width = name.size() + field.end - field.begin - pattern.size();
   return padded ? digits.size() == field.width || width == field.width : width >= field.width;
 }
 
-/// A link that leads nowhere was meant for a file: whoever reads it says what it is.
+/// Dangling links were meant as files, so they are kept; the reader reports them.
 bool is_file_or_dangling(const fs::path& path) {
   std::error_code error;
   return fs::is_regular_file(path, error) ||
@@ -100,7 +100,8 @@ std::vector<fs::path> files_of_printf(const fs::path& pattern, const NumberField
   return files;
 }
 
-/// Brackets stand for themselves: people have them in names, and do not write character classes.
+/// Files that match a glob. Brackets are literal: people use them in names, but not for character
+/// classes.
 std::vector<fs::path> files_of_glob(const std::string& pattern) {
   std::string escaped;
   for (const char c : pattern) escaped += c == '[' ? "[[]" : std::string(1, c);
@@ -115,8 +116,8 @@ std::vector<fs::path> files_of_glob(const std::string& pattern) {
   return files;
 }
 
-/// The number that a printf pattern has; none where `*` or `?` make it a glob, but for those in the
-/// name of a folder that is there.
+/// Number field of a printf pattern. Returns none for globs: `*` or `?` in the file name, or in the
+/// name of a folder that does not exist.
 std::optional<NumberField> printf_field(const fs::path& pattern) {
   constexpr const char* kGlob = "*?";
   const std::string name = pattern.filename().string();
@@ -132,7 +133,7 @@ std::vector<fs::path> files_of_pattern(const std::string& pattern) {
   return field ? files_of_printf(pattern, *field) : files_of_glob(pattern);
 }
 
-/// Only mesh files, in natural order. Throws IoError where there is none.
+/// Keeps mesh files only, in natural order. Throws IoError if there are none.
 std::vector<fs::path> mesh_files(std::vector<fs::path> files, const std::string& name,
                                  const std::string& nothing) {
   std::erase_if(files, [&](const fs::path& file) {
@@ -155,7 +156,7 @@ void check_one_format(const std::vector<fs::path>& files, const std::string& nam
   }
 }
 
-/// The files that a printf pattern would match with any number of digits, in natural order.
+/// Files that a printf pattern would match with any number of digits, in natural order.
 std::vector<fs::path> files_of_any_digits(const fs::path& pattern) {
   const std::string name = pattern.filename().string();
   const auto field = printf_field(pattern);
@@ -171,8 +172,8 @@ std::vector<fs::path> files_of_any_digits(const fs::path& pattern) {
   return files;
 }
 
-/// The pattern in the place of `pattern` that matches `files`, which have any number of digits: one
-/// of printf, or where none matches all, a glob.
+/// Pattern that matches all `files`, whatever their number of digits: a printf pattern, or a glob
+/// if no printf pattern does.
 std::string fitting_pattern(const fs::path& pattern, const std::vector<fs::path>& files) {
   const std::string name = pattern.filename().string();
   const NumberField field = *number_field(name);

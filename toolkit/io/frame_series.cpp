@@ -16,7 +16,7 @@ std::string folder_text(const fs::path& folder) {
   return text.empty() || text.back() == '/' ? text : text + '/';
 }
 
-/// "f_%04d.obj" for the series "f_*.obj" and "0012" in it.
+/// Returns "f_%04d.obj" for "0012" of the series "f_*.obj".
 std::string pattern_of(const NumberedName& name) {
   const std::string digits = name.text.substr(name.text.starts_with('-') ? 1 : 0);
   const bool is_padded = digits.size() > 1 && digits[0] == '0';
@@ -25,7 +25,7 @@ std::string pattern_of(const NumberedName& name) {
                          is_padded ? "%0" + std::to_string(digits.size()) + "d" : "%d");
 }
 
-/// Two files of one number, such as frame_1.obj and frame_01.obj.
+/// Throws IoError if two files have one number, such as frame_1.obj and frame_01.obj.
 void check_numbers(const std::vector<fs::path>& frames) {
   std::map<std::pair<std::string, long long>, fs::path> known;
   for (const fs::path& frame : frames) {
@@ -58,13 +58,13 @@ void check_order(const std::vector<fs::path>& frames) {
                     pattern.string() + "'");
 }
 
-/// "7", or "12 to 15".
+/// Returns "7" or "12 to 15".
 std::string run_of(long long first, long long last) {
   const std::string text = std::to_string(first);
   return first == last ? text : text + " to " + std::to_string(last);
 }
 
-/// A '-' before all numbers may be no sign.
+/// Notes that all numbers are negative, because their '-' may not be a sign.
 void note_numbers(FrameSeries& found, const std::string& name) {
   const NumberedName first = numbered(found.frames.front());
   const NumberedName last = numbered(found.frames.back());
@@ -74,7 +74,7 @@ void note_numbers(FrameSeries& found, const std::string& name) {
                         last.text + "; where '-' is no sign, they are in the wrong order");
 }
 
-/// Whether their differences are numbers of frames, and none overflows.
+/// True if all numbers are small enough that their differences cannot overflow.
 bool are_countable(const std::vector<long long>& numbers) {
   constexpr long long kMost = 1'000'000'000'000;
   return std::ranges::all_of(numbers,
@@ -92,7 +92,7 @@ void note_missing(FrameSeries& found, const std::string& name) {
                         "; without times beside them frames follow each other without a pause");
 }
 
-/// Numbered series of more than one file, and how many files each has.
+/// Number of files in each numbered series of two or more files.
 std::map<std::string, std::size_t> numbered_series(const std::vector<fs::path>& files) {
   std::map<std::string, std::size_t> sizes;
   for (const fs::path& file : files) ++sizes[numbered(file).series];
@@ -100,7 +100,7 @@ std::map<std::string, std::size_t> numbered_series(const std::vector<fs::path>& 
   return sizes;
 }
 
-/// The series that more than half of the files are of; empty where there is none, or it is one
+/// Series that more than half of the files belong to; empty if there is none or it has only one
 /// file.
 std::string main_series(const std::vector<fs::path>& files) {
   for (const auto& [series, size] : numbered_series(files)) {
@@ -116,8 +116,8 @@ std::string names_of(const std::vector<fs::path>& files) {
   return listed(names, 4);
 }
 
-/// Moves the files that are not of the main series out of `files`; not those of another format,
-/// which leave open what is meant.
+/// Moves the files that are not of the main series out of `files`. Files of another format stay,
+/// because they make the choice ambiguous.
 std::vector<fs::path> strangers_in(std::vector<fs::path>& files) {
   std::vector<fs::path> strangers;
   const std::string series = main_series(files);

@@ -19,8 +19,8 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-/// Extensions without which a file cannot be understood, and which are, or which say nothing of
-/// where surfaces are.
+/// True for extensions that are read, or that do not affect where surfaces are. A file may require
+/// any of them.
 bool is_known_extension(const std::string& extension) {
   static const std::vector<std::string> known = {
       "KHR_mesh_quantization",      "EXT_meshopt_compression", "KHR_texture_transform",
@@ -31,7 +31,7 @@ bool is_known_extension(const std::string& extension) {
          std::find(known.begin(), known.end(), extension) != known.end();
 }
 
-/// The two chunks of a .glb; a .gltf is all JSON.
+/// The two chunks of a .glb. A .gltf is all JSON.
 struct GltfChunks {
   std::string_view json;
   std::optional<std::string_view> binary;
@@ -73,7 +73,7 @@ GltfChunks gltf_chunks(const std::string& path, std::string_view bytes) {
 }
 
 Json gltf_json(const std::string& path, std::string_view text) {
-  // Some exporters fill up with zeros where the specification wants spaces.
+  // Some exporters pad with zeros; the specification requires spaces.
   while (text.ends_with('\0')) text.remove_suffix(1);
   return parse_json(path, text, "glTF");
 }
@@ -172,7 +172,7 @@ std::string weights_name(std::size_t set) {
   return "WEIGHTS_" + std::to_string(set);
 }
 
-/// Attributes of joints and their weights, set by set.
+/// Accessors of joints and their weights, set by set.
 std::vector<std::pair<std::size_t, std::size_t>> joint_sets(const GltfValue& attributes,
                                                             std::size_t size) {
   std::vector<std::pair<std::size_t, std::size_t>> sets;
@@ -223,7 +223,7 @@ GltfPrimitive gltf_primitive(const GltfValue& value, const GltfDocument& documen
   return primitive;
 }
 
-/// What else stands in `extras` is some program's own.
+/// Reads the names of targets. Other content of `extras` belongs to other programs.
 std::vector<std::string> target_names(const GltfValue& value) {
   std::vector<std::string> names;
   if (!value.has("extras") || !value.at("extras").has("targetNames")) return names;
@@ -282,7 +282,7 @@ GltfSkin gltf_skin(const GltfValue& value, const GltfDocument& document) {
   return skin;
 }
 
-/// The pictures of a material, its base colour first.
+/// Pictures of a material, its base colour first.
 std::vector<GltfValue> gltf_pictures(const GltfValue& material) {
   std::vector<GltfValue> pictures;
   const auto add = [&pictures](const GltfValue& surface, const char* name) {
@@ -319,13 +319,13 @@ GltfMaterial gltf_material(const GltfValue& value) {
   return material;
 }
 
-/// A node and which of its properties an animation changes.
+/// A node and the property that an animation changes.
 struct GltfTarget {
   std::size_t node;
   std::string property;
 };
 
-/// None for what is no part of the face: lights, materials and the like.
+/// Target of an animation channel; none for lights, materials and other targets that are not nodes.
 std::optional<GltfTarget> gltf_target(const GltfValue& target, std::size_t nodes,
                                       std::vector<std::string>& unread) {
   if (target.has("node")) return GltfTarget{target.index("node", nodes), target.at("path").text()};
@@ -360,7 +360,6 @@ GltfAnimation gltf_animation(const GltfValue& value, const GltfDocument& documen
   return animation;
 }
 
-/// The nodes at the top of the scene that is shown.
 std::vector<std::size_t> gltf_roots(const GltfValue& root, GltfDocument& document) {
   const std::vector<GltfValue> scenes = root.list("scenes");
   std::vector<std::size_t> roots;
@@ -391,7 +390,7 @@ void read_gltf_buffers(const GltfValue& root, const std::optional<std::string_vi
     const std::size_t bytes = buffer.count("byteLength");
     std::string content;
     const bool is_chunk = !buffer.has("uri") && document.buffers.empty() && binary;
-    // What programs read that know no compression, and may not be there.
+    // Fallback for programs that do not support the compression. Its bytes may be missing.
     const auto compression = buffer.extension("EXT_meshopt_compression");
     const bool stands_for_another =
         compression && (compression->flag("fallback") || !(buffer.has("uri") || is_chunk));

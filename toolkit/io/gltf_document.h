@@ -11,12 +11,12 @@
 
 #include <Eigen/Core>
 
-/// What a glTF file says, as it says it. Internal to the format.
+/// Content of a glTF file, as stored. Internal to the format.
 ///
 /// [Khronos. glTF 2.0 Specification. 2021]
 namespace mimetra {
 
-/// A view whose bytes are compressed. [EXT_meshopt_compression]
+/// Compressed bytes of a view. [EXT_meshopt_compression]
 struct GltfCompression {
   enum class Mode { attributes, triangles, indices };
   enum class Filter { none, octahedral, quaternion, exponential };
@@ -28,16 +28,15 @@ struct GltfCompression {
 
 struct GltfView {
   std::size_t buffer, offset, bytes;
-  std::size_t stride;  ///< 0 for numbers that stand close together
+  std::size_t stride;  ///< 0 for elements without gaps
   std::optional<GltfCompression> compression;
 };
 
-/// Where numbers start.
 struct GltfPlace {
   std::size_t view, offset;
 };
 
-/// Elements that replace others.
+/// Elements of an accessor that replace others.
 struct GltfSparse {
   std::size_t count;
   GltfPlace indices, values;
@@ -45,35 +44,35 @@ struct GltfSparse {
 };
 
 struct GltfAccessor {
-  std::optional<GltfPlace> place;  ///< zeros without one
+  std::optional<GltfPlace> place;  ///< if none, the numbers are 0
   std::size_t count;
-  int type;        ///< of a component: 5120 and so on
-  int components;  ///< of an element
+  int type;        ///< component type, 5120 to 5126
+  int components;  ///< components per element
   bool normalized;
   std::optional<GltfSparse> sparse;
 };
 
-/// Attributes by their ids in the compressed mesh; none of those that their accessors hold.
+/// Ids of attributes in the compressed mesh. An attribute without an id is stored in its accessor.
 /// [KHR_draco_mesh_compression]
 struct GltfDraco {
   std::size_t view;
   std::optional<std::size_t> positions, texture;
-  /// Joints and weights of each set of the primitive.
+  /// Ids of joints and weights, one pair for each set of the primitive.
   std::vector<std::pair<std::optional<std::size_t>, std::optional<std::size_t>>> joints;
 };
 
 struct GltfPrimitive {
   int mode;
   std::optional<std::size_t> positions, texture, indices, material;
-  /// Four joints of each vertex, and their weights; as many times as there are more.
+  /// Accessors of joints and their weights. Each set has four joints per vertex.
   std::vector<std::pair<std::size_t, std::size_t>> joints;
   std::vector<std::optional<std::size_t>> targets;
   std::optional<GltfDraco> draco;
-  /// Attributes that nothing here has a place for, by name.
+  /// Names of attributes that are present but not read.
   std::vector<std::string> unread;
-  bool polygons;  ///< triangles that share their first corner are one polygon [FB_ngon_encoding]
+  bool polygons;  ///< successive triangles with one first corner are a polygon [FB_ngon_encoding]
 
-  /// Equal for primitives that are faces on the same vertices.
+  /// Key that is equal for primitives that share their vertices.
   using Vertices = std::tuple<std::optional<std::size_t>, std::optional<std::size_t>,
                               std::vector<std::pair<std::size_t, std::size_t>>,
                               std::vector<std::optional<std::size_t>>>;
@@ -86,7 +85,7 @@ struct GltfMesh {
   std::vector<std::string> target_names;
   std::vector<double> weights;
 
-  /// Of its primitives, which should all have as many.
+  /// Largest number of targets of its primitives; valid files have the same number in all.
   std::size_t most_targets() const;
 };
 
@@ -105,14 +104,14 @@ struct GltfSkin {
 
 struct GltfMaterial {
   std::string name;
-  /// From stored to shown coordinates of the first of its pictures on TEXCOORD_0, its base colour
-  /// before others. [KHR_texture_transform]
+  /// Maps stored texture coordinates to coordinates in the picture. Taken from the first picture on
+  /// TEXCOORD_0; the base colour comes first. [KHR_texture_transform]
   Eigen::Matrix<double, 2, 3> texture;
 };
 
 struct GltfChannel {
   std::size_t node;
-  bool drives_weights;  ///< otherwise it moves the node
+  bool drives_weights;  ///< false if it moves the node
   std::size_t times, values;
   std::string interpolation;
 };
@@ -120,7 +119,7 @@ struct GltfChannel {
 struct GltfAnimation {
   std::string name;
   std::vector<GltfChannel> channels;
-  /// Pointers to weights that no channel has a place for. [KHR_animation_pointer]
+  /// Pointers to weights that no channel can represent. [KHR_animation_pointer]
   std::vector<std::string> unread;
 };
 
@@ -128,9 +127,10 @@ struct GltfDocument {
   std::string path, generator;
   std::vector<std::filesystem::path> files;
   std::size_t file_bytes = 0;
-  /// Bytes of each buffer; none of one that only stands for what is decompressed.
+  /// Bytes of each buffer; empty for a fallback of compressed data.
   std::vector<std::string> buffers;
-  /// What to say of those whose files are not there, by number, where one is needed.
+  /// Error messages for buffers whose files are missing, by buffer number. Thrown when a buffer is
+  /// used.
   std::map<std::size_t, std::string> missing_buffers;
   std::vector<GltfView> views;
   std::vector<GltfAccessor> accessors;
@@ -140,14 +140,13 @@ struct GltfDocument {
   std::vector<GltfMaterial> materials;
   std::vector<GltfAnimation> animations;
   std::vector<std::size_t> roots;
-  /// False where the file says that its rest pose is only the first frame.
+  /// False if the file says that its rest pose is only the first frame.
   bool rest_is_known = true;
   std::vector<std::string> notes;
 };
 
-/// Reads a .glb or .gltf with its buffers, which must lie in the file's own folder, or in the one
-/// that it links to. Indices of
-/// everything but vertices are sound. Throws IoError.
+/// Reads a .glb or .gltf with its buffers, which must be in the file's folder or in the folder of
+/// its link target. Checks all indices except those of vertices. Throws IoError.
 GltfDocument read_gltf_document(const std::filesystem::path& path);
 
 }  // namespace mimetra

@@ -53,7 +53,7 @@ std::vector<GltfValue> GltfValue::items() const {
 }
 
 std::size_t GltfValue::count() const {
-  // As far as every number of JSON is exact, which is far beyond any file.
+  // Up to here every integer is exact in JSON; no file is larger.
   constexpr double kMost = 9007199254740992.;
   const double value = number();
   if (value < 0 || value > kMost || value != std::floor(value)) {
@@ -127,7 +127,7 @@ const Json& GltfValue::object() const {
 
 namespace {
 
-/// As much of a URI as a message can hold.
+/// Start of a URI, short enough for a message.
 std::string shown_uri(const std::string& uri) {
   constexpr std::size_t kLongest = 60;
   return "'" + (uri.size() > kLongest ? uri.substr(0, kLongest) + "..." : uri) + "'";
@@ -165,7 +165,7 @@ int hex_digit(char c) {
   return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
-/// With %20 and the like as the characters they stand for.
+/// Replaces %20 and similar codes by their characters.
 std::string decoded_uri(std::string_view uri) {
   std::string text;
   for (std::size_t at = 0; at < uri.size(); ++at) {
@@ -204,7 +204,7 @@ GltfBuffer read_gltf_buffer(const std::string& path, const std::string& uri) {
   const bool is_plain = !name.empty() && name.find('\0') == std::string::npos &&
                         name.find(':') == std::string::npos && fs::path(name).is_relative();
   std::error_code unresolved;
-  // As stores of files have it: a folder of links to one that holds everything.
+  // Some file stores have folders of links into one folder with all files.
   const fs::path store = fs::weakly_canonical(path, unresolved).parent_path();
   if (!is_plain || !(is_inside(folder, folder / name) || is_inside(store, folder / name))) {
     throw IoError(path, "its buffer " + shown_uri(uri) +

@@ -9,11 +9,11 @@
 
 #include "toolkit/io/json_text.h"
 
-/// The JSON of a glTF file, and the buffers that it names. Internal to the reader.
+/// JSON of a glTF file and its buffers. Internal to the reader.
 namespace mimetra {
 
-/// One value of the file, and where it stands, for messages: "accessors[3].sparse". What is not
-/// as expected throws IoError.
+/// One value of the file and, for messages, its place: "accessors[3].sparse". Functions throw
+/// IoError for unexpected values.
 class GltfValue {
  public:
   GltfValue(const std::string& path, std::string where, const Json& json);
@@ -24,7 +24,7 @@ class GltfValue {
   bool is_array() const;
   bool is_text() const;
   GltfValue at(const char* name) const;
-  /// The values of an array; none where it is not there.
+  /// Values of an array; none if it is missing.
   std::vector<GltfValue> list(const char* name) const;
   std::vector<GltfValue> items() const;
 
@@ -32,7 +32,7 @@ class GltfValue {
   std::size_t count(const char* name) const { return at(name).count(); }
   std::size_t count_or(const char* name, std::size_t fallback) const;
 
-  /// The number of something that there are `size` of.
+  /// Index below `size`.
   std::size_t index(std::size_t size) const;
   std::size_t index(const char* name, std::size_t size) const { return at(name).index(size); }
   std::optional<std::size_t> maybe_index(const char* name, std::size_t size) const;
@@ -54,7 +54,7 @@ class GltfValue {
 
   std::string text() const;
   std::string text_or(const char* name, const std::string& fallback) const;
-  /// The same as a name, which may be copied many times.
+  /// Text of at most 1000 bytes, because names may be copied many times.
   std::string name() const;
   std::string name_or_nothing() const { return has("name") ? at("name").name() : std::string(); }
 
@@ -72,13 +72,13 @@ class GltfValue {
 
 struct GltfBuffer {
   std::string bytes;
-  std::optional<std::filesystem::path> file;  ///< none for bytes that stand in the glTF file itself
-  std::string missing = {};                   ///< what to say where there is no such file
+  std::optional<std::filesystem::path> file;  ///< none for data URIs and missing files
+  std::string missing = {};                   ///< error message if the file is missing
 };
 
-/// The buffer that `uri` of the glTF file `path` names: base64 data, or a file in the folder of
-/// `path`; links may lead to the folder that `path` itself leads to. Throws IoError, also for what
-/// lies elsewhere.
+/// Reads the buffer `uri` of the glTF file `path`: base64 data, or a file in the folder of `path`.
+/// Links may lead to the folder that `path` itself links to. Throws IoError, also for files
+/// elsewhere; a missing file is only reported in `missing`.
 GltfBuffer read_gltf_buffer(const std::string& path, const std::string& uri);
 
 }  // namespace mimetra

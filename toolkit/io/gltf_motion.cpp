@@ -93,7 +93,7 @@ std::shared_ptr<const WeightCurve> curve_of(const GltfDocument& document, GltfVa
   return std::make_shared<const WeightCurve>(std::move(curve));
 }
 
-/// An animation, and its channels that drive targets which are shown.
+/// An animation and its channels that drive targets of shown nodes.
 struct GltfClip {
   const GltfAnimation* animation;
   std::vector<const GltfChannel*> channels;
@@ -118,7 +118,7 @@ bool has_several_keys(const GltfDocument& document, const GltfClip& clip) {
   });
 }
 
-/// Whether a clip that is not read yet would move anything; one that cannot be read does not.
+/// True if a clip that is not yet read would move anything; false if it cannot be read.
 bool moves_weights(const GltfDocument& document, GltfValues& values, const GltfClip& clip) {
   std::set<std::pair<std::size_t, std::size_t>> seen;
   return std::ranges::any_of(clip.channels, [&](const GltfChannel* channel) {
@@ -136,7 +136,7 @@ std::string shown_name(const GltfDocument& document, const GltfAnimation& animat
   return "animations[" + std::to_string(&animation - document.animations.data()) + ']';
 }
 
-/// Takes the first clip of all nodes that each drives weights of, in their order.
+/// Takes clips in order. A clip that drives weights of an earlier one is left out.
 void take_clips(const GltfDocument& document, GltfValues& values,
                 const std::vector<GltfClip>& clips, GltfMotion& motion) {
   motion.weights.assign(document.nodes.size(), nullptr);

@@ -15,29 +15,30 @@
 #include "toolkit/io/scene.h"
 #include "toolkit/mesh/frame_source.h"
 
-/// Where a glTF file puts its meshes, and what its animations move. Internal to the format.
+/// Placement of meshes in a glTF file, and the effect of its animations. Internal to the format.
 namespace mimetra {
 
-/// A node with a mesh, or a joint, and where it stands.
+/// A node and its transform in the scene.
 struct PlacedNode {
   std::size_t node;
-  std::string_view name;  ///< its own, else that of the nearest node above; in the document
+  std::string_view name;  ///< own or nearest ancestor's name, stored in the document
   Eigen::Matrix4d world;
 };
 
-/// Nodes of a scene, depth first in the file's order. Throws IoError for one that is met twice.
+/// Nodes of the scene, depth first in the file's order. Throws IoError if a node is met twice.
 std::vector<PlacedNode> placed_nodes(const GltfDocument& document);
 
-/// A transform of each vertex: one of a node, or one blended of joints.
+/// Transform of each vertex: one for a whole node, or one per vertex blended from joints.
 class Placement {
  public:
   explicit Placement(const Eigen::Matrix4d& world) : all_(world.topRows<3>()) {}
-  /// A row of 12 numbers for each vertex, 3 x 4 column by column.
+  /// One row of 12 numbers per vertex, a 3 x 4 matrix column by column.
   explicit Placement(Frames blended) : blended_(std::move(blended)) {}
 
-  /// Which of `vertices` vertices are mirrored. \pre there is a transform for each of them
+  /// One flag per vertex, true if its transform mirrors. \pre each of the `vertices` has a
+  /// transform
   std::vector<bool> mirrored(Eigen::Index vertices) const;
-  /// `points` in place, or as directions. \pre there is a transform for each of them
+  /// Transforms `points` in place; `directions` omits the translation. \pre each has a transform
   void apply(Positions& points, bool directions) const;
 
  private:
@@ -50,22 +51,24 @@ class Placement {
 };
 
 struct GltfMotion {
-  /// Curves of the weights of each node's mesh; null where nothing drives them.
+  /// Weight curve of each node's mesh; null if nothing drives it.
   std::vector<std::shared_ptr<const WeightCurve>> weights;
-  /// Nodes that move as a whole.
+  /// Nodes whose transforms are animated.
   std::set<std::size_t> moved;
-  /// Animations whose weights those are.
+  /// Names of the animations that `weights` come from.
   std::set<std::string> clips;
-  /// Animations that drive weights which one of those drives.
+  /// Names of animations that are left out because one of `clips` drives the same weights.
   std::set<std::string> other_clips;
-  /// What drives weights in a way that is not read.
+  /// Animation pointers to weights that are not read.
   std::set<std::string> unread;
 };
 
-/// One clip of the nodes that are `shown`: animations that drive weights of different nodes belong
-/// together, and one that drives any weights which an earlier one drives is another clip, of which
-/// nothing is taken. Animations of several keys come before poses of one; where those that are read
-/// hold still, one that moves is read instead. Throws IoError.
+/// Reads one clip for the `shown` nodes. Animations that drive weights of different nodes belong
+/// together. An animation that drives any weights of an earlier one is another clip and is left out
+/// as a whole.
+///
+/// Animations with several keys come before poses of one key. If the chosen animations hold still,
+/// moving ones come first instead. Throws IoError.
 GltfMotion gltf_motion(const GltfDocument& document, GltfValues& values,
                        const std::set<std::size_t>& shown);
 

@@ -23,13 +23,12 @@ std::string number_name(const char* stem, std::size_t number) {
   return stem + std::string(3 - std::min<std::size_t>(3, digits.size()), '0') + digits;
 }
 
-/// A part, and which of its vertices are mirrored where they stand.
+/// A part of the scene, and flags of the vertices that its placement mirrors.
 struct PlacedPart {
   ScenePart part;
   std::vector<bool> mirrored;
 };
 
-/// Makes the parts of a scene.
 class GltfReader {
  public:
   GltfReader(const fs::path& path, const Context& context)
@@ -84,7 +83,7 @@ class GltfReader {
     return document_.meshes[*document_.nodes[node].mesh];
   }
 
-  /// Before anything is made of the counts.
+  /// Checks the counts before anything is allocated.
   void look_through() {
     double vertices = 0;
     std::size_t targets = 0;
@@ -116,7 +115,7 @@ class GltfReader {
          "animations point to weights by other than '/nodes/N/weights', which is left out");
   }
 
-  /// Weights of a node's mesh: over time, or those that stay.
+  /// Weights of a node's mesh, animated or constant.
   std::shared_ptr<const WeightCurve> weights_of(std::size_t node) const {
     if (motion_.weights[node]) return motion_.weights[node];
     const std::vector<double>& own = document_.nodes[node].weights;
@@ -144,7 +143,7 @@ class GltfReader {
     const bool is_named = !document_.nodes[placed.node].name.empty() || mesh.name.empty();
     std::string name(is_named ? placed.name : mesh.name);
     if (name.empty()) name = number_name("mesh_", *document_.nodes[placed.node].mesh);
-    // Primitives may share vertices, and are then one part.
+    // Primitives that share vertices become one part.
     std::map<GltfPrimitive::Vertices, std::size_t> made;
     std::vector<PlacedPart> own;
     for (const GltfPrimitive& primitive : mesh.primitives) {
@@ -205,8 +204,8 @@ class GltfReader {
     return made;
   }
 
-  /// What a primitive's compressed mesh holds, its numbers as their accessors normalise them.
-  /// \pre the primitive has positions
+  /// Decodes a primitive's compressed mesh and scales its numbers as their accessors normalise
+  /// them. \pre the primitive has positions
   DracoMesh decoded(const GltfPrimitive& primitive, const std::string& name) {
     DracoMesh mesh = decode_draco(document_.path, "'" + name + "'", *primitive.draco,
                                   values_.bytes(primitive.draco->view));
@@ -221,7 +220,7 @@ class GltfReader {
     return mesh;
   }
 
-  /// Numbers of a primitive: those of its compressed mesh, or of its accessor where that has none.
+  /// Returns `held`, the numbers of the compressed mesh, or reads the accessor if `held` is empty.
   Frames held_or_read(const Frames& held, std::size_t accessor, int components,
                       Eigen::Index vertices) {
     return held.rows() > 0 ? held : values_.read(accessor, components, vertices);
@@ -235,7 +234,7 @@ class GltfReader {
     return held_or_read(draco ? draco->texture : Frames(), *primitive.texture, 2, vertices);
   }
 
-  /// From the file's upper left corner to the lower left one.
+  /// Moves the origin from the upper left to the lower left corner.
   static std::vector<Eigen::Vector2d> shown(const Frames& stored) {
     std::vector<Eigen::Vector2d> coordinates;
     coordinates.reserve(static_cast<std::size_t>(stored.rows()));
@@ -245,8 +244,8 @@ class GltfReader {
     return coordinates;
   }
 
-  /// Whether a material's coordinates lie in a corner of what 16 bits can say, from which its
-  /// transform brings them to the picture: numbers of fewer bits, scaled to a range of their own.
+  /// True if a material's coordinates fill only a corner of the 16-bit range, and its transform
+  /// maps them into the picture. Quantisation to at most 14 bits, in a range of its own, does this.
   bool brings_from_corner(std::size_t material) {
     constexpr double kCorner = 16383. / 65535, kLeastScale = 2, kRounding = 1. / 256;
     const auto& transform = document_.materials[material].texture;
@@ -272,16 +271,16 @@ class GltfReader {
            (shown(most) <= 1 + kRounding).all();
   }
 
-  /// Whether a material's transform brings integers to texture coordinates; others move or repeat
-  /// its picture. \pre the material is of a primitive that is shown
+  /// True if a material's transform undoes quantisation; other transforms move or repeat its
+  /// picture. \pre a primitive that is shown uses the material
   bool undoes_quantisation(std::size_t material, const GltfAccessor& accessor) {
     constexpr int kUnsignedShort = 5123, kFloat = 5126;
     const auto& transform = document_.materials[material].texture;
     if (accessor.type == kFloat) return false;
-    // gltfpack stores shares of the range that a material's coordinates have.
+    // gltfpack normalises coordinates to the range that its material uses.
     if (!accessor.normalized || document_.generator.starts_with("gltfpack")) return true;
     if (accessor.type != kUnsignedShort) return false;
-    // Fewer bits than 16 of the range from 0 to 1.
+    // Coordinates from 0 to 1, quantised to fewer than 16 bits.
     constexpr double kRounding = 1e-6;
     for (int bits = 8; bits < 16; ++bits) {
       const double scale = 65535. / ((1 << bits) - 1);
@@ -289,14 +288,14 @@ class GltfReader {
         return true;
       }
     }
-    // What gltfpack made and another program wrote again.
+    // The file may come from gltfpack and then from another program that replaced `generator`.
     const auto [known, is_new] = brings_from_corner_.try_emplace(material, false);
     if (is_new) known->second = brings_from_corner(material);
     return known->second;
   }
 
-  /// Shown coordinates of those that are stored, where a material's transform undoes quantisation.
-  /// \pre the primitive has texture coordinates
+  /// Texture coordinates after the material's transform, if the transform undoes quantisation;
+  /// otherwise unchanged. \pre the primitive has texture coordinates
   Frames texture_of(const GltfPrimitive& primitive, Frames texture) {
     if (!primitive.material) return texture;
     if (!undoes_quantisation(*primitive.material, document_.accessors[*primitive.texture])) {
@@ -309,7 +308,6 @@ class GltfReader {
     return texture;
   }
 
-  /// The sets of joints of a primitive, which may lie in its compressed mesh.
   std::vector<VertexJoints> joint_sets(const GltfPrimitive& primitive,
                                        const std::optional<DracoMesh>& draco,
                                        Eigen::Index vertices) {
@@ -348,7 +346,7 @@ class GltfReader {
       }
     }
     for (Eigen::Index v = 0; v < vertices; ++v) {
-      // Weights that are stored in a byte do not quite add up to 1; some add up to nothing.
+      // Weights stored in bytes do not sum to exactly 1; some sum to 0.
       if (sums[v] > 0) {
         blended.row(v) /= sums[v];
       } else {
@@ -358,7 +356,7 @@ class GltfReader {
     return Placement(std::move(blended));
   }
 
-  /// From the vertices as they are stored to where each joint holds them (rows as of Placement).
+  /// Transforms from stored vertices to the pose of each joint (J x 12, rows as in Placement).
   Frames joints_of(const GltfSkin& skin) {
     const auto count = static_cast<Eigen::Index>(skin.joints.size());
     if (count == 0) fail("a skin", "has no joints");
@@ -395,7 +393,8 @@ class GltfReader {
     append_triangles(triangles_of(primitive.mode, corners, part.name), primitive, placed);
   }
 
-  /// Faces without a material do not have that of the faces before them.
+  /// Starts a group of faces. Faces without a material get a group as well, or they would join the
+  /// previous one.
   void add_group(const GltfPrimitive& primitive, ScenePart& part) const {
     if (!has_materials_) return;
     std::string name = "none";
@@ -406,7 +405,7 @@ class GltfReader {
     part.groups.push_back({part.polygons.size(), std::move(name)});
   }
 
-  /// Corners of triangles, one after the other. [glTF 2.0, 3.7.2.1]
+  /// Corners of triangles, one triangle after the other. [glTF 2.0, 3.7.2.1]
   std::vector<int> triangles_of(int mode, const std::vector<int>& corners,
                                 const std::string& name) const {
     constexpr int kTriangles = 4, kStrip = 5;
@@ -425,14 +424,14 @@ class GltfReader {
     return triangles;
   }
 
-  /// Whether most corners of a polygon are mirrored.
+  /// True if most corners of a polygon are mirrored.
   static bool is_mirrored(const std::vector<bool>& vertices, std::span<const int> corners) {
     const auto count = std::ranges::count_if(
         corners, [&](int corner) { return vertices[static_cast<std::size_t>(corner)]; });
     return 2 * static_cast<std::size_t>(count) > corners.size();
   }
 
-  /// Triangles, or the polygons that they are fans of.
+  /// Appends triangles, or the polygons that they triangulate.
   static void append_triangles(const std::vector<int>& corners, const GltfPrimitive& primitive,
                                PlacedPart& placed) {
     ScenePart& part = placed.part;
@@ -455,17 +454,17 @@ class GltfReader {
       if (begin < first) break;
       const std::span<int> face_corners(&polygons.corners[begin],
                                         polygons.corners.data() + polygons.offsets[face]);
-      // The first corner stays, and with it the triangles.
+      // Keeping the first corner keeps the triangulation.
       if (is_mirrored(placed.mirrored, face_corners)) std::ranges::reverse(face_corners.subspan(1));
     }
     if (part.texture.coordinates.empty()) return;
-    // Each vertex has coordinates of its own.
+    // Each vertex has its own texture coordinates.
     part.texture.corners.insert(part.texture.corners.end(),
                                 polygons.corners.begin() + static_cast<std::ptrdiff_t>(first),
                                 polygons.corners.end());
   }
 
-  /// Animated nodes that hold meshes, or joints that hold their vertices.
+  /// Notes animated nodes that move meshes or the joints of their vertices.
   void note_moved_nodes() {
     std::vector<bool> moves_face(document_.nodes.size(), false);
     for (auto placed = placed_.rbegin(); placed != placed_.rend(); ++placed) {
@@ -492,9 +491,9 @@ class GltfReader {
   std::map<std::size_t, Eigen::Matrix4d> worlds_;
   GltfMotion motion_;
   std::set<std::size_t> joints_;
-  std::map<std::size_t, bool> brings_from_corner_;  ///< by material
+  std::map<std::size_t, bool> brings_from_corner_;  ///< key: material
   std::size_t all_targets_ = 0, targets_read_ = 0;
-  bool has_materials_ = false;  ///< whether a primitive that is shown has one
+  bool has_materials_ = false;  ///< true if a primitive that is shown has one
   std::set<std::string> left_out_, unread_;
   std::vector<std::string> notes_, motion_notes_;
 };
@@ -508,7 +507,7 @@ Scene read_gltf(const fs::path& path, const Context& context) {
 SequenceFormat gltf_format() {
   SequenceFormat format{"glTF 2.0", {".glb", ".gltf"}, false, SequenceFormat::Precision::single,
                         open_scene, begin_gltf};
-  // Polygons by FB_ngon_encoding.
+  // FB_ngon_encoding stores polygons.
   format.holds = {.polygons = true,
                   .texture = HeldParts::Texture::vertices,
                   .bare_faces = false,

@@ -15,7 +15,8 @@ namespace {
 using MeshoptMode = GltfCompression::Mode;
 using MeshoptFilter = GltfCompression::Filter;
 
-/// What the library takes for granted. [EXT_meshopt_compression]
+/// True if the layout meets requirements that meshoptimizer does not check.
+/// [EXT_meshopt_compression]
 bool has_sound_layout(const GltfCompression& view) {
   const std::size_t stride = view.stride;
   if (view.mode != MeshoptMode::attributes) {
@@ -27,8 +28,8 @@ bool has_sound_layout(const GltfCompression& view) {
   return stride > 0 && stride <= 256 && stride % 4 == 0;
 }
 
-/// Elements that as many bytes can hold at most: 16 equal bytes of attributes take two bits, and a
-/// triangle one byte at least.
+/// True if `bytes` can contain all elements of the view. 16 equal bytes of attributes take at least
+/// two bits, a triangle at least one byte.
 bool may_hold(const GltfCompression& view, std::size_t bytes) {
   const std::size_t most = view.mode == MeshoptMode::attributes
                                ? 64 * bytes / view.stride + 256  // a block may be half empty
@@ -88,7 +89,7 @@ std::string decompressed(const std::string& path, const std::string& what,
 
 namespace {
 
-// Types of components; the remaining one is that of floats.
+// Component types other than float (5126).
 constexpr int kGltfByte = 5120, kGltfUnsignedByte = 5121, kGltfShort = 5122,
               kGltfUnsignedShort = 5123, kGltfUnsignedInt = 5125;
 
@@ -115,7 +116,7 @@ double gltf_number(const char* at, int type) {
   }
 }
 
-/// What 1 is stored as in normalised integers. [glTF 2.0, 3.11]
+/// Integer that represents 1 in normalised components. [glTF 2.0, 3.11]
 double gltf_one(int type) {
   switch (type) {
     case kGltfByte:
@@ -165,7 +166,7 @@ std::string_view GltfValues::bytes(std::size_t view) {
     known->second = decompressed(document_.path, what, compression,
                                  part(compression.buffer, compression.offset, compression.bytes));
     decompressed_bytes_ += known->second.size();
-    // Many views of the same bytes.
+    // Many views may decompress the same bytes, so their sum is checked.
     check_scene_size(document_.path, static_cast<double>(decompressed_bytes_) / 24, 1,
                      document_.file_bytes);
   }

@@ -27,12 +27,12 @@ constexpr int kVertexData = 34962, kFaceData = 34963;
 /// Smallest and largest x, y and z.
 using GltfBounds = std::array<std::array<double, 3>, 2>;
 
-/// As long as a bound can get as text, to keep room for it.
+/// Number with the longest text that a bound can have; reserves room in the JSON.
 constexpr double kLongestNumber = -std::numeric_limits<double>::min();
 constexpr GltfBounds kUnknownBounds = {{{kLongestNumber, kLongestNumber, kLongestNumber},
                                         {kLongestNumber, kLongestNumber, kLongestNumber}}};
 
-/// Bounds that hold a point too; those of the first point (0) alone.
+/// Extends bounds by a point. Point 0 replaces them.
 void include(GltfBounds& bounds, Eigen::Index point, const float* xyz) {
   for (std::size_t c = 0; c < 3; ++c) {
     const auto value = static_cast<double>(xyz[c]);
@@ -41,7 +41,6 @@ void include(GltfBounds& bounds, Eigen::Index point, const float* xyz) {
   }
 }
 
-/// `count` numbers in single precision.
 std::string float_bytes(const double* values, Eigen::Index count) {
   std::string bytes(static_cast<std::size_t>(count) * sizeof(float), '\0');
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -51,13 +50,14 @@ std::string float_bytes(const double* values, Eigen::Index count) {
   return bytes;
 }
 
-/// Numbers of which those that are not 0 are stored, at least one.
+/// Elements that are not 0, or the first one if all are 0.
 struct SparseNumbers {
   std::string indices, values;
   std::size_t stored = 0;
 };
 
-/// `values` in elements of `size`; elements with `count / 2` or more that are not 0 give nothing.
+/// Returns the elements of `size` numbers that are not 0; none if they are more than half of
+/// `count`.
 std::optional<SparseNumbers> sparse_numbers(const double* values, Eigen::Index count, int size) {
   SparseNumbers sparse;
   const auto keep = [&](Eigen::Index element) {
@@ -77,10 +77,10 @@ std::optional<SparseNumbers> sparse_numbers(const double* values, Eigen::Index c
   return sparse;
 }
 
-/// What stands where in the file, told before it is written.
+/// Layout of the file, decided before anything is written.
 class GltfLayout {
  public:
-  /// Room for `bytes` bytes. Returns the view.
+  /// Reserves `bytes` bytes. Returns the number of the view.
   std::size_t add_view(std::size_t bytes, int use = 0) {
     Json view = {{"buffer", 0}, {"byteOffset", bytes_}, {"byteLength", bytes}};
     if (use != 0) view["target"] = use;
@@ -89,13 +89,13 @@ class GltfLayout {
     return views_.size() - 1;
   }
 
-  /// Elements that fill a view.
+  /// Adds an accessor whose elements fill a view. Returns its number.
   std::size_t add(std::size_t view, int type, const char* shape, std::size_t count) {
     accessors_.push_back(
         {{"bufferView", view}, {"componentType", type}, {"count", count}, {"type", shape}});
     return accessors_.size() - 1;
   }
-  /// The same of numbers of which only some are not 0.
+  /// Adds a sparse accessor, which stores only some elements. Returns its number.
   std::size_t add_sparse(int type, const char* shape, std::size_t count, std::size_t stored,
                          std::size_t indices, std::size_t values) {
     accessors_.push_back({{"componentType", type},
@@ -129,8 +129,8 @@ class GltfLayout {
   std::size_t bytes_ = 0;
 };
 
-/// Fans of the polygons. Of neighbours none starts with the same corner, so that triangles which
-/// share their first one are one polygon. [FB_ngon_encoding]
+/// Corners of the polygons' fans. Successive fans start with different corners, so that successive
+/// triangles with one first corner are one polygon. [FB_ngon_encoding]
 std::vector<int> fan_corners(const Polygons& polygons) {
   std::vector<int> corners;
   corners.reserve(3 * polygons.corners.size());
@@ -139,7 +139,7 @@ std::vector<int> fan_corners(const Polygons& polygons) {
     const int* polygon = polygons.corners.data() + polygons.offsets[static_cast<std::size_t>(face)];
     const int size = polygons.offsets[static_cast<std::size_t>(face) + 1] -
                      polygons.offsets[static_cast<std::size_t>(face)];
-    // A quad that starts with its opposite corner keeps its diagonal.
+    // A quad keeps its diagonal if it starts with its opposite corner.
     int start = 0;
     if (polygon[0] == last_start) start = size == 4 && polygon[2] != last_start ? 2 : 1;
     for (int corner = 1; corner + 1 < size; ++corner) {
@@ -152,8 +152,8 @@ std::vector<int> fan_corners(const Polygons& polygons) {
   return corners;
 }
 
-/// Unit normals of vertices (N x 3); vertices at one place share theirs, and those of no triangle
-/// have the z axis.
+/// Unit normals of vertices (N x 3). Vertices at one place share a normal; vertices without a
+/// triangle get the z axis.
 Positions unit_normals(const Positions& positions, const Triangles& triangles, const Weld& weld) {
   Positions normals = vertex_normals(positions, triangles, weld);
   for (auto normal : normals.rowwise()) {
@@ -167,10 +167,10 @@ Positions unit_normals(const Positions& positions, const Triangles& triangles, c
   return normals;
 }
 
-/// Numbers in [-1, 1] as bytes of which 127 is 1. [KHR_mesh_quantization]
+/// Changes of normals in [-1, 1] as bytes, where 127 represents 1. [KHR_mesh_quantization]
 struct NormalBytes {
   std::size_t stored = 0;
-  std::string indices, values;  ///< of the vertices whose normal changes; one at least
+  std::string indices, values;  ///< vertices whose normal changes; at least one
 };
 
 std::string padded(std::string bytes) {
@@ -207,16 +207,15 @@ void check_gltf_times(const fs::path& target, const Eigen::VectorXd& times) {
   }
 }
 
-/// A file that is being written: faces and rest pose first, then targets and weights.
+/// Writes a file: first faces and rest pose, then targets and weights.
 class GltfFile {
  public:
   struct Plan {
     const SequenceHeader& header;
     std::vector<std::string> targets;
-    /// Displacements of each target, where they are known already (3N x D); otherwise there is room
-    /// for them.
+    /// Displacements of the targets (3N x D) if they are known already; otherwise room is reserved.
     const Eigen::MatrixXd* displacements = nullptr;
-    /// Weights (F x D, row by row), none for a model that stands.
+    /// Weights (F x D, row by row), empty for a model without motion.
     Frames weights = {};
   };
 
@@ -246,7 +245,7 @@ class GltfFile {
     add_extra_beside(outputs_, target, extra, extra_files_);
   }
 
-  /// One target for which there is room. From several threads, each target once.
+  /// Writes one target into its reserved room. Several threads may write, each target once.
   void write_target(int target, const double* displacements) {
     const auto index = static_cast<std::size_t>(target);
     const std::string bytes = float_bytes(displacements, neutral_.size());
@@ -260,7 +259,7 @@ class GltfFile {
     write_view(views_of_targets_[index], bytes);
   }
 
-  /// The neutral as it is stored, from which targets lie away.
+  /// Neutral as stored. Targets are displacements from it.
   const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>& neutral() const {
     return neutral_;
   }
@@ -296,7 +295,7 @@ class GltfFile {
 
   fs::path data_path() const { return fs::path(target_).replace_extension(".bin"); }
 
-  /// Decides where everything stands; returns what is known already of it.
+  /// Decides where everything is stored. Returns the content that is known already, by view.
   std::vector<std::pair<std::size_t, std::string>> laid_out(const Plan& plan,
                                                             const Context& context) {
     std::vector<std::pair<std::size_t, std::string>> known;
@@ -319,14 +318,14 @@ class GltfFile {
     GltfBounds bounds = kUnknownBounds;
     for (Eigen::Index v = 0; v < neutral_.rows(); ++v) include(bounds, v, neutral_.row(v).data());
     layout_.set_bounds(positions_, bounds);
-    // Of positions as they are stored, so that a file that is read and written again is the same.
+    // Normals follow from the stored positions, so that reading and writing a file changes nothing.
     const Positions stored = neutral_.cast<double>();
     const Weld weld = Weld::exact(stored);
     const Positions normals = unit_normals(stored, faces.triangles, weld);
     normals_ = layout_.add(put(float_bytes(normals.data(), normals.size()), kVertexData),
                            kFloatType, "VEC3", vertices);
     if (auto texture = texture_of_vertices(faces)) {
-      // From the upper left corner.
+      // glTF's origin is the upper left corner.
       for (Eigen::Vector2d& coordinates : *texture) coordinates.y() = 1 - coordinates.y();
       texture_ = layout_.add(
           put(float_bytes(texture->front().data(), 2 * static_cast<Eigen::Index>(texture->size())),
@@ -377,8 +376,8 @@ class GltfFile {
     accessors_of_targets_.push_back(accessor);
   }
 
-  /// Changes of normals: as bytes, or in single precision if a normal turns by more than 60
-  /// degrees.
+  /// Adds changes of normals as bytes, or in single precision if a component changes by more than
+  /// 1. That requires a turn of more than 60 degrees.
   template <typename Put>
   void add_target_normals(const Positions& changes, const Put& put) {
     const auto vertices = static_cast<std::size_t>(changes.rows());
@@ -453,7 +452,7 @@ class GltfFile {
     return root.dump(-1, ' ', false, Json::error_handler_t::replace);
   }
 
-  /// A file's name as a URI. [RFC 3986, 2.3]
+  /// Returns a file's name as a URI. [RFC 3986, 2.3]
   static std::string uri_of(const std::string& name) {
     std::string uri;
     for (const char c : name) {
@@ -468,7 +467,7 @@ class GltfFile {
   }
 
   void check_length() {
-    // With bounds as long as they can get.
+    // The bounds still have their longest text.
     json_room_ = (json().size() + 3) / 4 * 4;
     const std::size_t length = kHead + json_room_ + kChunkHead + layout_.bytes();
     constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
@@ -501,7 +500,7 @@ class GltfFile {
   std::vector<fs::path> extra_files_;
 };
 
-/// True where the only frame is the rest pose, so that there is nothing to drive.
+/// True if the only frame is the rest pose, so that nothing moves.
 bool stands_still(const SequenceHeader& header) {
   return header.times.size() == 1 && header.times[0] == 0 && !header.rest_is_known;
 }
@@ -517,7 +516,6 @@ GltfFile::Plan plan_of_frames(const SequenceHeader& header) {
   return plan;
 }
 
-/// A target for each frame.
 class GltfFrames : public FrameSink {
  public:
   GltfFrames(const SequenceHeader& header, const fs::path& target,

@@ -52,14 +52,14 @@ namespace {
 
 using Links = std::map<std::string, std::optional<std::uint64_t>>;
 
-/// Reads parts that must not overlap: together no more than the file holds, so that a file whose
-/// parts refer to one another in a circle comes to an end.
+/// Reads parts that must not overlap. Together they must not exceed the file, so that reading ends
+/// even if parts refer to each other in a circle.
 class Hdf5Parts {
  public:
   explicit Hdf5Parts(const Hdf5Bytes& file) : file_(file), left_(file.size()) {}
 
   std::string at(std::uint64_t address, std::uint64_t bytes) {
-    // Each counts, so that those without bytes come to an end, too.
+    // Every part counts one byte more than it has, so that circles of empty parts end as well.
     if (bytes >= left_) file_.fail_damaged("parts of it overlap, or lie outside of it");
     left_ -= bytes + 1;
     return file_.at(address, bytes);
@@ -82,7 +82,7 @@ HeaderBlock continuation_of(const Hdf5Bytes& file, std::string_view body) {
   return {address, fields.address()};
 }
 
-/// Objects as HDF5 writes them unless it is asked for its latest format.
+/// Messages of an object in the format that HDF5 writes by default.
 std::vector<Hdf5Message> messages_of_version_1(const Hdf5Bytes& file, std::uint64_t address) {
   Hdf5Parts parts(file);
   const std::string prefix = parts.at(address, 16);
@@ -155,7 +155,7 @@ std::vector<Hdf5Message> messages_of_version_2(const Hdf5Bytes& file, std::uint6
   return messages;
 }
 
-/// Names of old groups stand in a heap.
+/// Reads the heap that contains the names of a group in the old format.
 std::string heap_of(const Hdf5Bytes& file, Hdf5Parts& parts, std::uint64_t address) {
   const std::string head = parts.at(address, 32);
   if (!head.starts_with("HEAP")) file.fail_damaged("a group's names are not where it says");
@@ -203,8 +203,8 @@ void add_link(const Hdf5Bytes& file, std::string_view message, Links& links) {
   links[name] = kind == kHardLink ? std::optional(fields.address()) : std::nullopt;
 }
 
-/// True where a message names a heap of links or attributes: what groups of the latest format have
-/// beyond a few.
+/// True if a message refers to a heap of links or attributes. Groups of the latest format use a
+/// heap for more than a few.
 bool is_dense(const Hdf5Bytes& file, const Hdf5Message& message) {
   Hdf5Fields fields(file, message.body);
   fields.skip(1);
@@ -253,7 +253,7 @@ std::uint64_t hdf5_root(const Hdf5Bytes& file) {
   }
   fields.skip(16);
   const auto end = fields.address();
-  // What an older version has of a root is a link without a name.
+  // Older versions store the root as a link without a name.
   if (version < 2) fields.skip(16);
   if (end > file.size()) {
     file.fail("is truncated: " + std::to_string(file.size()) + " bytes, expected " +

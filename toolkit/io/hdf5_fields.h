@@ -12,14 +12,12 @@
 
 #include "toolkit/io/binary_file.h"
 
-/// The bytes of HDF5 files, and the parts that they are made of. Internal to what reads and writes
-/// them.
+/// Bytes of HDF5 files and the structures in them. Internal to the readers and writers of HDF5.
 namespace mimetra {
 
-/// The bytes of an HDF5 file.
 class Hdf5Bytes {
  public:
-  /// Throws IoError for what is no HDF5 file.
+  /// Throws IoError if the file cannot be read or is not an HDF5 file.
   explicit Hdf5Bytes(const std::filesystem::path& path);
 
   const std::string& path() const { return path_; }
@@ -27,7 +25,7 @@ class Hdf5Bytes {
   bool holds(std::uint64_t address, std::uint64_t bytes) const {
     return address <= size() && bytes <= size() - address;
   }
-  /// Throw IoError where the file does not hold them.
+  /// Throw IoError if the bytes are not within the file.
   void read(std::uint64_t address, char* to, std::size_t bytes) const;
   std::string at(std::uint64_t address, std::uint64_t bytes) const;
 
@@ -39,7 +37,7 @@ class Hdf5Bytes {
   InputFile file_;
 };
 
-/// What an object's header says of it: its shape, its type, an attribute.
+/// One message of an object's header, such as its shape, its type or an attribute.
 struct Hdf5Message {
   enum Type : unsigned {
     dataspace = 0x1,
@@ -57,12 +55,11 @@ struct Hdf5Message {
   };
 
   unsigned type = 0;
-  /// True where the file has it in another place.
+  /// True if the file stores the message elsewhere.
   bool is_shared = false;
   std::string body;
 };
 
-/// How a file stores numbers.
 struct Hdf5Type {
   bool is_real = true;
   bool is_signed = true;
@@ -70,13 +67,13 @@ struct Hdf5Type {
   std::endian order = std::endian::little;
 };
 
-/// What HDF5 writes in place of an address where there is nothing.
+/// Address that HDF5 writes for missing data.
 constexpr std::uint64_t kNowhere = ~std::uint64_t{0};
 
-/// Walks through a run of bytes. Throws IoError where it ends early.
+/// Walks through a run of bytes. Throws IoError if it ends too early.
 class Hdf5Fields {
  public:
-  /// Keeps references: both must outlive it.
+  /// Keeps references: `file` and `bytes` must outlive it.
   Hdf5Fields(const Hdf5Bytes& file, std::string_view bytes) : file_(file), left_(bytes) {}
 
   std::size_t left() const { return left_.size(); }
@@ -85,7 +82,7 @@ class Hdf5Fields {
   /// An unsigned integer of 1 to 8 bytes.
   std::uint64_t number(std::size_t bytes);
   std::uint64_t byte() { return number(1); }
-  /// Addresses and lengths.
+  /// An address or a length.
   std::uint64_t address() { return number(8); }
 
  private:
@@ -93,17 +90,17 @@ class Hdf5Fields {
   std::string_view left_;
 };
 
-/// Where the header of the top group is.
+/// Address of the header of the top group.
 std::uint64_t hdf5_root(const Hdf5Bytes& file);
 
-/// All messages of the object whose header is at an address.
+/// Reads all messages of the object with the header at `address`.
 std::vector<Hdf5Message> hdf5_messages(const Hdf5Bytes& file, std::uint64_t address);
 
-/// The links of a group: the address of each object's header, none for links to elsewhere.
+/// Links of a group: the address of each object's header, none for links to elsewhere.
 std::map<std::string, std::optional<std::uint64_t>> hdf5_links(
     const Hdf5Bytes& file, const std::vector<Hdf5Message>& messages);
 
-/// The leaves of a B-tree of version 1, each with the key before it (`key_bytes`).
+/// Leaves of a B-tree of version 1, each with the key before it (`key_bytes`).
 struct Hdf5Leaf {
   std::string key;
   std::uint64_t address;
@@ -114,10 +111,10 @@ std::vector<Hdf5Leaf> hdf5_leaves(const Hdf5Bytes& file, std::uint64_t root, uns
 /// Sizes of the dimensions of a dataspace message.
 std::vector<std::uint64_t> hdf5_shape(const Hdf5Bytes& file, std::string_view message);
 
-/// None for what is not a number that processors know.
+/// Number type of a datatype message; none if the values are not numbers that processors support.
 std::optional<Hdf5Type> hdf5_type(const Hdf5Bytes& file, std::string_view message);
 
-/// Stored numbers as doubles. \pre as many are there as `values` has place for
+/// Decodes stored numbers to doubles. \pre `stored` has values.size() numbers
 void decode_hdf5(const Hdf5Type& type, const char* stored, std::span<double> values);
 
 }  // namespace mimetra

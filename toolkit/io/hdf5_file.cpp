@@ -21,7 +21,6 @@ namespace {
 
 using Storage = Hdf5Dataset::Storage;
 
-/// Rows that stand one after the other in the file.
 class ContiguousRows : public Storage {
  public:
   ContiguousRows(std::shared_ptr<const Hdf5Bytes> file, std::uint64_t address,
@@ -82,11 +81,10 @@ std::vector<Filter> filters_of(const Hdf5Dataset& dataset, const Hdf5Bytes& file
   return filters;
 }
 
-/// One of the blocks that a dataset is cut into.
 struct Chunk {
   std::uint64_t address = kNowhere;
   std::uint64_t stored_bytes = 0;
-  /// Bit i is set where filter i was left out.
+  /// Bit i is set if filter i was not applied.
   std::uint64_t left_out = 0;
 };
 
@@ -101,7 +99,8 @@ std::string inflated(const Hdf5Dataset& dataset, std::string_view stored, std::s
   return bytes;
 }
 
-/// First all first bytes of the numbers, then all second ones, and so on, put in order.
+/// Undoes the shuffle filter, which stores all first bytes of the numbers, then all second bytes,
+/// and so on.
 std::string unshuffled(std::string_view bytes, std::size_t number) {
   std::string numbers(bytes);
   const std::size_t count = bytes.size() / number;
@@ -132,7 +131,8 @@ class DecodedBlocks {
     }
   }
 
-  /// `count` bytes of a block from `offset` on, which may be put into `held`. From several threads.
+  /// Returns `count` bytes of a block from `offset` on, which may be stored in `held`. Several
+  /// threads may call it.
   const char* bytes(std::uint64_t block, std::uint64_t offset, std::uint64_t count,
                     std::string& held) const {
     const std::uint64_t at = block * block_bytes_ + offset;
@@ -148,11 +148,11 @@ class DecodedBlocks {
   std::optional<ScratchFile> file_;
 };
 
-/// A dataset in blocks, each of which is compressed for itself. Blocks of the same rows are kept
-/// once they are decoded, as neighbouring rows are read one after the other.
+/// Dataset in separately compressed blocks. The decoded blocks of the last rows are kept, because
+/// neighbouring rows are usually read next.
 class ChunkedRows : public Storage {
  public:
-  /// `extents` of a block, one for each dimension. \pre no extent is 0
+  /// `extents` contains the size of a block in each dimension. \pre no extent is 0
   ChunkedRows(const Hdf5Dataset& dataset, std::shared_ptr<const Hdf5Bytes> file,
               std::vector<std::uint64_t> extents, std::vector<Filter> filters)
       : dataset_(dataset),
@@ -163,10 +163,10 @@ class ChunkedRows : public Storage {
         number_(dataset.type().bytes),
         row_bytes_(dataset.row_size() * number_),
         chunk_bytes_(number_) {
-    // What is decoded at once.
+    // Largest block, since a block is decoded as a whole.
     constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
     for (std::size_t d = 0; d < shape_.size(); ++d) {
-      // A block may reach beyond the dataset, whose rows are what is kept.
+      // A block may reach beyond the dataset, so the dataset does not limit its size.
       if (chunk_bytes_ > kMostBytes / extents_[d]) {
         dataset_.fail("is cut into blocks of more than 1 GiB; rewrite it by `h5repack` with less");
       }
@@ -182,7 +182,7 @@ class ChunkedRows : public Storage {
   }
   std::uint64_t chunk_bytes() const { return chunk_bytes_; }
 
-  /// The number of the block that starts at `offsets`.
+  /// Number of the block that starts at `offsets`.
   std::uint64_t index_of(const std::vector<std::uint64_t>& offsets) const {
     std::uint64_t index = 0;
     for (std::size_t d = 0; d < shape_.size(); ++d) {
@@ -194,7 +194,7 @@ class ChunkedRows : public Storage {
     return index;
   }
 
-  /// All blocks in order. Together they must not take more than the file holds.
+  /// Takes all blocks in order. Throws IoError if together they are larger than the file.
   void set(std::vector<Chunk> chunks) {
     std::uint64_t left = file_->size();
     for (const Chunk& chunk : chunks) {
@@ -236,7 +236,7 @@ class ChunkedRows : public Storage {
     return false;
   }
 
-  /// The blocks of one row of them.
+  /// Returns the decoded blocks of one slab: all blocks that cover the same rows.
   std::shared_ptr<const DecodedBlocks> blocks_of(std::uint64_t slab) const {
     const std::lock_guard lock(mutex_);
     if (kept_ && kept_slab_ == slab) return kept_;
@@ -268,9 +268,9 @@ class ChunkedRows : public Storage {
     return bytes;
   }
 
-  /// Copies the part of some rows of block number `index` that is in the dataset.
+  /// Copies the first `rows` rows of block number `index`, without the part outside the dataset.
   void copy_block(const char* from, std::uint64_t index, std::uint64_t rows, char* to) const {
-    // Three dimensions at most: rows, columns, and numbers that stand together.
+    // At most three dimensions: rows, columns, and the numbers of one element.
     std::array<std::uint64_t, 3> size = {1, 1, 1}, extent = {1, 1, 1}, begin = {0, 0, 0};
     for (std::size_t d = shape_.size(); d > 0; --d) {
       size[d - 1] = shape_[d - 1];
@@ -304,10 +304,11 @@ class ChunkedRows : public Storage {
   mutable std::shared_ptr<const DecodedBlocks> kept_;
 };
 
-/// The blocks that a B-tree of version 1 lists.
+/// Blocks in the list of a B-tree of version 1; empty if some are missing.
 std::vector<Chunk> chunks_of_tree(const Hdf5Bytes& file, const ChunkedRows& rows, std::size_t rank,
                                   std::uint64_t tree) {
-  // Size, filters left out, offset in each dimension, and of the byte in a number.
+  // A key contains the size, the filters not applied, and the offset in each dimension and within a
+  // number.
   const std::size_t key_bytes = 8 + 8 * (rank + 1);
   const auto leaves =
       tree == kNowhere ? std::vector<Hdf5Leaf>{} : hdf5_leaves(file, tree, 1, key_bytes);
@@ -323,7 +324,7 @@ std::vector<Chunk> chunks_of_tree(const Hdf5Bytes& file, const ChunkedRows& rows
   return chunks;
 }
 
-/// How the latest format lists blocks.
+/// Lists of blocks in the latest format.
 enum class ChunkIndex : std::uint64_t { single = 1, implicit = 2 };
 
 std::vector<Chunk> chunks_of_index(const Hdf5Dataset& dataset, const ChunkedRows& rows,
@@ -372,7 +373,7 @@ std::shared_ptr<const Storage> chunked(const Hdf5Dataset& dataset,
   extents.pop_back();
   auto rows = std::make_shared<ChunkedRows>(dataset, file, std::move(extents),
                                             filters_of(dataset, *file, filters));
-  // No file holds a block in no bytes.
+  // Every block takes at least one byte of the file.
   if (rows->count() > file->size()) dataset.fail("claims more numbers than the file holds");
   auto chunks = version == 4 ? chunks_of_index(dataset, *rows, fields, (flags & kFilteredSize) != 0)
                              : chunks_of_tree(*file, *rows, rank, tree);
@@ -381,7 +382,7 @@ std::shared_ptr<const Storage> chunked(const Hdf5Dataset& dataset,
   return rows;
 }
 
-/// The rows of the dataset's shape as the layout and filter messages say. Throws IoError.
+/// Source of the dataset's rows, from the layout and filter messages. Throws IoError.
 std::shared_ptr<const Storage> hdf5_storage(const Hdf5Dataset& dataset,
                                             std::shared_ptr<const Hdf5Bytes> file,
                                             const Hdf5Message& layout, const Hdf5Message* filters) {
@@ -418,7 +419,7 @@ std::shared_ptr<const Storage> hdf5_storage(const Hdf5Dataset& dataset,
   return chunked(dataset, file, fields, version, filters);
 }
 
-/// Null where there is none.
+/// First message of a type; null if there is none.
 const Hdf5Message* find(const std::vector<Hdf5Message>& messages, Hdf5Message::Type type) {
   for (const Hdf5Message& message : messages) {
     if (message.type == type) return &message;
@@ -447,13 +448,13 @@ Hdf5Dataset::Hdf5Dataset(std::shared_ptr<const Hdf5Bytes> file, std::string name
   type_ = *number;
   shape_ = hdf5_shape(*file_, space->body);
   for (std::size_t d = 0; d < shape_.size(); ++d) {
-    // Eight bytes for each number are counted by 64 bits.
+    // The size in bytes, with 8 for each number, must fit into 64 bits.
     constexpr std::uint64_t kMost = std::numeric_limits<std::int64_t>::max() / 8;
     if (shape_[d] > 0 && size_ > kMost / shape_[d]) fail("claims more numbers than the file holds");
     size_ *= shape_[d];
     if (d > 0) row_size_ *= shape_[d];
   }
-  // Beside an extent of 0 others could be anything, and readers go through rows.
+  // If one extent is 0, the others are not limited by the size. Readers loop over rows.
   if (size_ == 0 && std::ranges::any_of(shape_, [&](auto n) { return n > file_->size(); })) {
     fail("claims more rows than the file has bytes");
   }

@@ -11,39 +11,39 @@
 
 #include "toolkit/io/hdf5_fields.h"
 
-/// HDF5 files, read without HDF5's library: that one crashes on damaged files, follows what a file
-/// says into other files, and loads plugins. Here nothing but the file itself is read, and every
-/// address, size and count is checked against it first. What is read are numbers at the top of a
-/// file, as HDF5 and h5py store them unless they are asked for their latest format. Internal to the
-/// readers of formats that are HDF5.
+/// Reads HDF5 files without HDF5's library, which crashes on damaged files, follows references to
+/// other files, and loads plugins. This reader opens only the file itself and checks every address,
+/// size and count against it. It reads numbers at the top of a file, in the format that HDF5 and
+/// h5py write by default. Internal to the readers of formats that are HDF5.
 ///
 /// [The HDF Group. HDF5 File Format Specification, version 3.0]
 namespace mimetra {
 
-/// An array of numbers in a file, of which parts are read.
+/// Array of numbers in a file, which can be read in parts.
 class Hdf5Dataset {
  public:
-  /// Throws IoError for what is no array of numbers, is stored anywhere but in the file, by means
-  /// of other filters than those of HDF5 itself, or claims more than the file can hold.
+  /// Throws IoError if the object is not an array of numbers, is stored outside the file, or claims
+  /// more numbers than the file can contain. Also throws it for filters other than deflate, shuffle
+  /// and Fletcher-32.
   Hdf5Dataset(std::shared_ptr<const Hdf5Bytes> file, std::string name,
               const std::vector<Hdf5Message>& messages);
 
   const std::vector<std::uint64_t>& shape() const { return shape_; }
   const Hdf5Type& type() const { return type_; }
-  /// Numbers for each index of the first dimension, and in all.
+  /// Count of numbers per index of the first dimension, and in total.
   std::uint64_t row_size() const { return row_size_; }
   std::uint64_t size() const { return size_; }
 
-  /// Rows of the first dimension from `first` on, as many as `values` has place for. From several
-  /// threads. Throws IoError for damaged content. \pre they are there
+  /// Reads rows of the first dimension from `first` on, as many as fit into `values`. Several
+  /// threads may call it. Throws IoError if the content is damaged. \pre the dataset has these rows
   void read(std::uint64_t first, std::span<double> values) const;
-  /// All of them, in C order.
+  /// Reads all numbers in C order.
   std::vector<double> values() const;
 
-  /// Throws IoError that names the dataset.
+  /// Throws IoError with the name of the dataset.
   [[noreturn]] void fail(const std::string& message) const;
 
-  /// Where the bytes of rows are.
+  /// Source of the bytes of rows.
   class Storage {
    public:
     virtual ~Storage() = default;
@@ -60,21 +60,22 @@ class Hdf5Dataset {
   std::shared_ptr<const Storage> storage_;
 };
 
-/// The top of an HDF5 file.
+/// Top group of an HDF5 file.
 class Hdf5File {
  public:
-  /// Throws IoError for what is missing, a folder, no HDF5 file, truncated or damaged.
+  /// Throws IoError if the file is missing, a folder, not HDF5, truncated or damaged.
   explicit Hdf5File(const std::filesystem::path& path);
 
   const std::string& path() const { return bytes_->path(); }
-  /// Of the top group, in order.
+  /// Names in the top group, in alphabetical order.
   std::vector<std::string> names() const;
   bool has(const std::string& name) const { return links_.contains(name); }
-  /// Throws IoError; also for a link to elsewhere, which is not followed.
+  /// Returns a dataset. Throws IoError, also for links to elsewhere, which are not followed.
   Hdf5Dataset dataset(const std::string& name) const;
 
   bool has_attribute(const std::string& name) const { return attributes_.contains(name); }
-  /// One finite number; `otherwise` where there is none. Throws IoError for anything else.
+  /// Value of an attribute, or `otherwise` if it is missing. Throws IoError unless it is one finite
+  /// number.
   double attribute(const std::string& name, double otherwise) const;
 
   /// Throws IoError.
@@ -84,9 +85,9 @@ class Hdf5File {
   void add_attribute(const Hdf5Message& message);
 
   std::shared_ptr<const Hdf5Bytes> bytes_;
-  /// Where each object's header is; none for links to elsewhere.
+  /// Address of each object's header; none for links to elsewhere.
   std::map<std::string, std::optional<std::uint64_t>> links_;
-  /// None for what is not one number.
+  /// Values of attributes; none if the attribute is not a single number.
   std::map<std::string, std::optional<double>> attributes_;
 };
 

@@ -11,7 +11,7 @@
 namespace mimetra {
 namespace {
 
-/// Of children of an index, in halves: as HDF5 itself has it.
+/// Half of the most children of an index node, as in HDF5 itself.
 constexpr std::uint16_t kInternalK = 16;
 constexpr std::size_t kSuperblockBytes = 96;
 constexpr std::size_t kEntryBytes = 40;
@@ -27,7 +27,7 @@ class Bytes {
     bytes_ += text;
     return *this;
   }
-  /// Zeros up to `size` bytes.
+  /// Appends zeros up to `size` bytes.
   Bytes& up_to(std::size_t size) {
     bytes_.resize(size, '\0');
     return *this;
@@ -116,7 +116,7 @@ std::string space_message(const Hdf5Array& array) {
   return message;
 }
 
-/// No value stands for numbers that are missing: all are there.
+/// Message without a fill value, because no numbers are missing.
 std::string fill_message() {
   constexpr unsigned kAllocatedLate = 2, kWhenSet = 2, kDefined = 1;
   return Bytes().u8(2).u8(kAllocatedLate).u8(kWhenSet).u8(kDefined).u32(0);
@@ -149,7 +149,7 @@ std::string attribute_message(const std::string& name, const Hdf5Array& value) {
 
 std::string message(std::size_t type, const std::string& content) {
   const std::string padded = Bytes().text(content).padded();
-  // The format counts the bytes of a message by 16 bits.
+  // The format stores the size of a message in 16 bits.
   if (padded.size() > 0xffff) throw std::length_error("an HDF5 attribute is too long");
   return Bytes().u16(type).u16(padded.size()).u32(0).text(padded);
 }
@@ -220,7 +220,7 @@ void Hdf5Image::add_attribute(const std::string& path, const std::string& name, 
 }
 
 std::string Hdf5Image::image() {
-  // Once to learn what all of it takes.
+  // The first pass finds the size of everything.
   write_all();
   std::uint64_t end = bytes_.size();
   for (auto& [path, node] : nodes_) {
@@ -249,7 +249,7 @@ void Hdf5Image::write_all() {
     if (!node.is_reserved) continue;
     end = std::max(end, node.place + size_of(node.array) * bytes_of(node.array));
   }
-  // All links of a group are in one leaf of its index, which holds twice this many.
+  // A group's links fill one leaf of its index. A leaf contains twice this many.
   const std::size_t leaf_k = std::max<std::size_t>(4, (most_links() + 1) / 2);
   const std::string superblock = Bytes()
                                      .text({"\x89HDF\r\n\x1a\n", 8})
@@ -296,7 +296,7 @@ std::uint64_t Hdf5Image::write_object(const std::string& path) {
 
 std::string Hdf5Image::links_of_group(const std::string& path) {
   const std::string before = path.empty() ? "" : path + '/';
-  // Nothing has the name of no bytes, with which the names begin.
+  // The names begin with an empty name, which nothing has.
   Bytes names;
   names.u64(0);
   std::string entries;
@@ -315,7 +315,7 @@ std::string Hdf5Image::links_of_group(const std::string& path) {
   const auto heap_data = append(heap);
   const auto heap_at =
       append(Bytes().text("HEAP").u32(0).u64(heap.size()).u64(kNothingFree).u64(heap_data));
-  // As much as any leaf holds, filled or not.
+  // All leaves have the same size, full or not.
   const std::size_t leaf_entries = 2 * std::max<std::size_t>(4, (most_links() + 1) / 2);
   const auto leaf = append(Bytes().text("SNOD").u8(1).u8(0).u16(count).text(entries).up_to(
       8 + leaf_entries * kEntryBytes));

@@ -9,8 +9,8 @@
 
 #include <Eigen/Core>
 
-/// HDF5 files, written without HDF5's library, which cannot leave out the positions of a long
-/// sequence and crashes where a disk is full. Internal to the writers of formats that are HDF5.
+/// Writes HDF5 files without HDF5's library, which cannot leave out the positions of a long
+/// sequence and crashes on full disks. Internal to the writers of formats that are HDF5.
 ///
 /// [The HDF Group. HDF5 File Format Specification, version 3.0]
 namespace mimetra {
@@ -24,33 +24,32 @@ struct Hdf5Array {
   using Integers = Eigen::Ref<const Rows<int>>;
 
   Type type;
-  std::vector<std::uint64_t> shape;  ///< empty for one number, or a text
+  std::vector<std::uint64_t> shape;  ///< empty for one number or a text
   std::string bytes;
 
   static Hdf5Array of(double value);
   static Hdf5Array of(std::string_view text);
   static Hdf5Array of(std::span<const double> values);
-  /// As 32-bit integers.
+  /// Stored as 32-bit integers.
   static Hdf5Array of(std::span<const int> values);
-  /// As 64-bit integers.
+  /// Stored as 64-bit integers.
   static Hdf5Array of(std::span<const std::int64_t> values, std::vector<std::uint64_t> shape);
-  /// float64 or 32-bit integers, rows x columns.
+  /// Stored as float64 or 32-bit integers, rows x columns.
   static Hdf5Array of(const Doubles& matrix);
   static Hdf5Array of(const Integers& matrix);
 };
 
-/// A tree of groups, arrays and attributes, and the bytes of the file that holds it: the same for
-/// the same tree. Paths are "NAME" or "GROUP/NAME"; groups are made where they are named first.
+/// Tree of groups, arrays and attributes. It makes the bytes of the HDF5 file, which are equal for
+/// equal trees. Paths are "NAME" or "GROUP/NAME"; missing groups are created.
 class Hdf5Image {
  public:
   void add(const std::string& path, Hdf5Array array);
-  /// One whose numbers are written elsewhere, in C order, to the place that `reserved` has after
-  /// image().
+  /// Adds an array whose numbers the caller writes, in C order, to place_of(path) after image().
   void reserve(const std::string& path, Hdf5Array::Type type, std::vector<std::uint64_t> shape);
-  /// Of the group or array at a path; "" is the top.
+  /// Adds an attribute to the group or array at a path; "" is the top.
   void add_attribute(const std::string& path, const std::string& name, Hdf5Array value);
 
-  /// All bytes before those of what is reserved; the file ends with the last reserved one.
+  /// Returns all bytes before the reserved arrays. The last reserved array ends the file.
   std::string image();
   std::uint64_t place_of(const std::string& path) const { return nodes_.at(path).place; }
 
@@ -59,7 +58,7 @@ class Hdf5Image {
     bool is_group = true;
     bool is_reserved = false;
     Hdf5Array array = {};
-    std::uint64_t place = 0;  ///< of an array's numbers
+    std::uint64_t place = 0;  ///< offset of an array's numbers
     std::map<std::string, Hdf5Array> attributes = {};
   };
 

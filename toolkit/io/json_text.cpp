@@ -14,14 +14,14 @@ namespace mimetra {
 namespace {
 
 constexpr std::size_t kLongestJson = std::size_t{512} << 20;
-/// Values are copied and written by functions that call themselves for each level.
+/// Limits the recursion of the functions that copy and write values.
 constexpr std::size_t kDeepestJson = 100;
-/// Each key is compared with those before it.
+/// ordered_json compares each key with all keys before it.
 constexpr std::size_t kMostKeys = 10000;
 constexpr std::size_t kLongestMessage = 160;
 
-/// Reads along before a value is made, and throws std::runtime_error for what the parser would let
-/// pass. (Its own callback looks through the whole list for each object in it.)
+/// Checks the text before a value is made. Throws std::runtime_error for content that the parser
+/// would accept. (The parser's own callback searches the whole list for every object in it.)
 class Guard : public nlohmann::json_sax<Json> {
  public:
   bool null() override { return true; }
@@ -43,7 +43,7 @@ class Guard : public nlohmann::json_sax<Json> {
   bool start_array(std::size_t) override { return open(); }
   bool end_object() override { return close(); }
   bool end_array() override { return close(); }
-  /// The parser says it again.
+  /// The parser reports the error later.
   bool parse_error(std::size_t, const std::string&, const Json::exception&) override {
     return false;
   }
@@ -79,7 +79,7 @@ class Guard : public nlohmann::json_sax<Json> {
   std::vector<std::set<std::string>> keys_;
 };
 
-/// "[json.exception.parse_error.101] parse error at line 1, column 8: ..." from "line" on.
+/// Returns "[json.exception.parse_error.101] parse error at line 1, column 8: ..." from "line" on.
 std::string without_codes(const std::string& message) {
   const auto line = message.find("line ");
   const auto bracket = message.find("] ");

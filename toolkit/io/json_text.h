@@ -7,31 +7,30 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-/// The one way by which JSON comes in and goes out. Readers catch Json::exception for values of
-/// another kind than they expect; what is no sound JSON never reaches them.
+/// Reads and writes all JSON of the project. Readers catch Json::exception for values of unexpected
+/// types; malformed JSON is refused before they see it.
 namespace mimetra {
 
-/// JSON with its keys in the order they were added.
+/// JSON that keeps its keys in the order of insertion.
 using Json = nlohmann::ordered_json;
 
-/// The value that `text` holds; a byte order mark may stand before it. Throws IoError with `path`,
-/// with what was `expected`, and with the line, for what is no JSON, is longer than 512 MB, nested
-/// deeper than 100 levels, has a key twice in an object or more than 10000 of them, or a zero byte
-/// in a string.
+/// Parses `text`, which may begin with a byte order mark. Throws IoError with `path`, what was
+/// `expected` and, for syntax errors, the line. Refuses text longer than 512 MB, more than 100
+/// nested levels, an object with a repeated key or more than 10000 keys, and zero bytes in strings.
 Json parse_json(const std::string& path, std::string_view text,
                 const std::string& expected = "JSON");
 
-/// The same from a file. Throws as read_file too.
+/// Parses a file. Throws as parse_json() and read_file().
 Json read_json(const std::filesystem::path& path, const std::string& expected = "JSON");
 
-/// The same; none where there is no such file, or no sound JSON in it.
+/// Parses a file; none if it cannot be read or is not valid JSON.
 std::optional<Json> read_json_if_any(const std::filesystem::path& path);
 
-/// The text of a value, on one line or indented. Bytes that are no UTF-8 become U+FFFD, so that
-/// no name ends a run.
+/// Text of a value, on one line or indented. Bytes that are not UTF-8 become U+FFFD, so that no
+/// name causes an error.
 std::string json_text(const Json& json, int indent = -1);
 
-/// A value for messages: short, whatever it is.
+/// Short text of any value, for messages.
 std::string short_text(const Json& json);
 
 }  // namespace mimetra

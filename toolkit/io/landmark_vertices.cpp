@@ -23,14 +23,14 @@ int vertex_of_word(const TextCursor& text, std::string_view word) {
   return static_cast<int>(value);
 }
 
-/// Moves behind a line that is done. Throws IoError where it is not.
+/// Moves to the next line. Throws IoError if words are left on this line.
 void finish_line(TextCursor& text) {
   const std::string_view found = text.word();
   if (!found.empty()) text.fail_expected("the end of the line", found);
   text.next_line();
 }
 
-/// The part of TOML that eos uses.
+/// Reads the subset of TOML that eos uses.
 LandmarkMapping read_sections(TextCursor& text) {
   LandmarkMapping mapping;
   std::set<std::string> seen;
@@ -86,7 +86,7 @@ LandmarkMapping read_landmark_mapping(const fs::path& path) {
 std::vector<fs::path> landmark_mappings(const fs::path& model) {
   const fs::path folder = fs::is_directory(model) ? model : model.parent_path();
   std::vector<fs::path> found;
-  std::error_code missing;  // then nothing is found
+  std::error_code missing;  // a missing folder has no mappings
   for (const fs::path& file : fs::directory_iterator(folder.empty() ? "." : folder, missing)) {
     const std::string name = file.filename().string();
     if (name == "landmarks68.txt" || (name.starts_with("ibug_to_") && name.ends_with(".txt"))) {

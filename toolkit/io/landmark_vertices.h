@@ -9,22 +9,24 @@
 
 namespace mimetra {
 
-/// Which vertex of a model each named landmark is, in the order of the file.
+/// Named landmarks and the vertex of each, in the order of the file.
 using LandmarkMapping = std::vector<std::pair<std::string, int>>;
 
-/// Reads a mapping: eos' `[landmark_mappings]` with lines `9 = 33` (name = vertex; other sections
-/// are left out), or one vertex a line for the landmarks "1", "2", .... Vertices are 0-based, '#'
-/// starts a comment. Throws IoError that names the line.
+/// Reads a mapping in one of two forms. The form of eos has lines `9 = 33` (name = vertex) in the
+/// section `[landmark_mappings]`; other sections are ignored. A list has one vertex a line, for the
+/// landmarks "1", "2", .... Vertices are 0-based, and '#' starts a comment. Throws IoError with the
+/// line.
 LandmarkMapping read_landmark_mapping(const std::filesystem::path& path);
 
-/// The mappings in a model's folder, `ibug_to_*.txt` and `landmarks68.txt`, in alphabetical order;
+/// Mappings in a model's folder, `ibug_to_*.txt` and `landmarks68.txt`, in alphabetical order.
 /// `model` is the folder or a file in it.
 std::vector<std::filesystem::path> landmark_mappings(const std::filesystem::path& model);
 
-/// That one. Throws IoError where there is none, or more than one.
+/// Returns the only mapping in a model's folder. Throws IoError if there is none or more than one.
 std::filesystem::path find_landmark_mapping(const std::filesystem::path& model);
 
-/// iBUG's landmarks of a mapping that names them 1 to 68, from 0 on; other names are left out.
+/// Landmarks that a mapping names 1 to 68, as in iBUG's scheme, numbered from 0. Ignores other
+/// names.
 LandmarkVertices ibug_landmarks(const LandmarkMapping& mapping);
 
 }  // namespace mimetra

@@ -15,29 +15,29 @@
 namespace mimetra {
 namespace {
 
-/// Columns of rotations, behind the 52.
+/// Rotation columns, after the 52 blendshapes.
 constexpr std::array kRotations = {"HeadYaw",     "HeadPitch",     "HeadRoll",
                                    "LeftEyeYaw",  "LeftEyePitch",  "LeftEyeRoll",
                                    "RightEyeYaw", "RightEyePitch", "RightEyeRoll"};
 
 constexpr long long kThousandths = 1000;
-/// Timecodes count fewer frames in a second than that.
+/// Highest rate in frames per second: Timecode::parse() accepts frames below 1000.
 constexpr double kFastest = 999;
 
-/// For each expression the column that holds it; -1 for none.
+/// Column of each expression; -1 for none.
 std::vector<int> columns_of(const std::vector<std::string>& expressions) {
   WeightTrack arkit;
   arkit.names = live_link_names();
   return match_weights(arkit, expressions).column;
 }
 
-/// Frames per second that timecodes count by: the usual number nearest to the median step, where
-/// one is near.
+/// Frames per second of the timecodes: a usual rate within 1 % of the median, otherwise the median,
+/// rounded.
 int counted_rate(const Eigen::VectorXd& times) {
   if (times.size() < 2) return 30;
   const double found = 1 / median_difference(times);
   for (const int rate : kUsualRates) {
-    // 29.97 is counted by 30.
+    // 29.97 becomes 30.
     if (std::abs(rate - found) < 0.01 * rate) return rate;
   }
   return static_cast<int>(std::lround(std::clamp(found, 1.0, kFastest)));
@@ -47,7 +47,7 @@ std::string two_digits(long long number) {
   return (number < 10 ? "0" : "") + std::to_string(number);
 }
 
-/// `count` thousandths of frames since midnight.
+/// Timecode of `count` thousandths of frames since midnight.
 std::string timecode_text(long long count, int rate) {
   const long long second = count / (rate * kThousandths) % kSecondsOfDay;
   const long long frames = count % (rate * kThousandths);
@@ -57,7 +57,7 @@ std::string timecode_text(long long count, int rate) {
          std::string(3 - thousandths.size(), '0') + thousandths;
 }
 
-/// What reading the timecodes again does not find.
+/// Note on times that reading the timecodes would not restore; none if it restores all.
 std::optional<std::string> lost_times(const std::vector<Timecode>& codes,
                                       const Eigen::VectorXd& times, int rate) {
   if (codes.size() < 2) return {};
@@ -71,12 +71,11 @@ std::optional<std::string> lost_times(const std::vector<Timecode>& codes,
     const double was = times[static_cast<Eigen::Index>(f)] - times[0];
     largest = std::max(largest, std::abs(found.times[f] - was));
   }
-  // Each of the two timecodes is rounded by half of a thousandth of a frame.
+  // Each of the two timecodes is rounded by up to half of a thousandth of a frame.
   if (largest <= 2.0 / (rate * static_cast<double>(kThousandths))) return {};
   return "times are up to " + readable(largest, 3) + " s from the weights' where it is read";
 }
 
-/// The timecodes of all frames, as text.
 std::vector<std::string> timecodes_of(const Eigen::VectorXd& times, bool are_known,
                                       std::vector<std::string>& notes) {
   const int rate = counted_rate(times);
@@ -105,7 +104,7 @@ std::vector<std::string> timecodes_of(const Eigen::VectorXd& times, bool are_kno
   return texts;
 }
 
-/// The weights in Live Link's columns (F x 52), and what becomes of the others.
+/// Weights in Live Link's columns (F x 52). Adds notes on dropped and shared expressions.
 Eigen::MatrixXd in_columns(const WeightTrack& track, std::vector<std::string>& notes) {
   const std::vector<int> column = columns_of(track.names);
   const auto width = static_cast<Eigen::Index>(live_link_names().size());

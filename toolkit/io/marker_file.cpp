@@ -10,10 +10,9 @@
 namespace mimetra {
 namespace {
 
-/// A line with numbers.
 struct NumberLine {
   int line;
-  std::string name;  ///< what stands before them
+  std::string name;  ///< name before the numbers
   std::vector<long long> numbers;
 };
 

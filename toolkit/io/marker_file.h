@@ -8,27 +8,31 @@
 
 namespace mimetra {
 
-/// Markers of a file, and the line that each stands in (of two lists that of the source's).
+/// Markers read from a file, and the line number of each. With two lists, that line is the source
+/// list's.
 struct MarkerFile {
   std::vector<Marker> markers;
   std::vector<int> lines;
 };
 
-/// Reads pairs of vertices, source and target, as people write them: a line each, with a comma, a
-/// colon or blanks between (`.corr`, YAML's `- 12:34`), after a line with their number or not
-/// (`.cons`); or two lines with all of the source and all of the target, as `source: [12, 56]` and
-/// `target: [34, 78]` or without names. `#` begins a comment. Vertices are counted from
-/// `index_base` in the file, 0 or 1, and from 0 in the result.
+/// Reads pairs of a source and a target vertex. `#` begins a comment. The file has one of two
+/// forms:
+///  - One pair a line, separated by a comma, a colon or blanks, as in `.corr` files and YAML lists
+///    (`- 12:34`). A first line with the number of pairs may come before them (`.cons`).
+///  - Two lines with all source and all target vertices, `source: [12, 56]` and `target: [34, 78]`.
+///    The names may be missing.
 ///
-/// Throws IoError that names the line of what is no such pair, a vertex below the base, another
-/// number of pairs than announced, or no pair at all. Whether a mesh has the vertices is for
-/// check_markers().
+/// Vertices count from `index_base` (0 or 1) in the file, and from 0 in the result.
+///
+/// Throws IoError with the line if a line is not a pair or a vertex is below the base. Also throws
+/// it if the number of pairs is 0 or differs from the announced one. check_markers() checks that
+/// the meshes have these vertices.
 MarkerFile read_marker_file(const std::filesystem::path& path, int index_base = 0);
-/// Its markers alone.
+/// Markers of read_marker_file(), without their lines.
 std::vector<Marker> read_markers(const std::filesystem::path& path, int index_base = 0);
 
-/// The same as text that read_markers() reads: a pair a line, counted from 0, each with its
-/// `comments` (as many as markers, or none), after lines of `header`.
+/// Text that read_markers() reads: one pair a line, counted from 0, after the lines of `header`.
+/// `comments` has one entry for each marker, or none.
 std::string marker_text(const std::vector<Marker>& markers,
                         const std::vector<std::string>& comments = {},
                         const std::vector<std::string>& header = {});

@@ -14,13 +14,14 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-/// Windows writes paths with '\'.
+/// Replaces the '\' that Windows writes in paths by '/'.
 std::string with_slashes(std::string path) {
   std::ranges::replace(path, '\\', '/');
   return path;
 }
 
-/// Libraries are small texts: whatever else a mesh names is left alone.
+/// Content of a library. None for files that are not .mtl, cannot be read, or exceed 16 MB, since
+/// libraries are small texts.
 std::optional<std::string> text_of_library(const fs::path& path) {
   constexpr std::uintmax_t kMostBytes = std::uintmax_t{16} << 20;
   std::error_code error;
@@ -31,11 +32,11 @@ std::optional<std::string> text_of_library(const fs::path& path) {
   try {
     return read_file(path);
   } catch (const IoError&) {
-    return std::nullopt;  // it is named as missing where materials are written
+    return std::nullopt;  // written() reports it as missing
   }
 }
 
-/// A statement names one file, spaces and all, or several.
+/// A statement holds one file name, which may contain spaces, or several names.
 void add_libraries(Materials& materials, const fs::path& folder, const std::string& statement) {
   const auto add = [&](const std::string& name) {
     const fs::path path = folder / with_slashes(name);
@@ -58,7 +59,8 @@ bool names_texture(std::string_view keyword) {
   return keyword.starts_with("map_") || std::ranges::find(kOthers, keyword) != kOthers.end();
 }
 
-/// How many words may follow an option of a texture: numbers only, where there may be fewer.
+/// Largest number of words after an option of a texture. Options with several words take numbers
+/// only, and may have fewer of them.
 int words_after(std::string_view option) {
   if (option == "-o" || option == "-s" || option == "-t") return 3;
   return option == "-mm" ? 2 : 1;
@@ -70,7 +72,7 @@ bool is_number(std::string_view word) {
   return error == std::errc() && end == word.data() + word.size();
 }
 
-/// Where the path of a texture starts in a line of a library; npos where it names none.
+/// Offset of a texture's path in a line of a library; npos if the line has none.
 std::size_t path_in(const std::string& line) {
   const std::string unnamed;
   TextCursor cursor(unnamed, line, {});
@@ -92,8 +94,8 @@ fs::path place_of_folder(const fs::path& folder) {
   return fs::weakly_canonical(fs::absolute(folder.empty() ? "." : folder), unreadable);
 }
 
-/// The text of a library for another folder, and the textures that its paths were turned to. What
-/// need not change stays byte by byte.
+/// Text of a library for another folder. Adds the changed texture paths to `textures`. All other
+/// bytes stay the same.
 std::string moved_text(const MaterialLibrary& library, const fs::path& folder,
                        std::vector<std::string>& textures) {
   const fs::path from = place_of_folder(library.path.parent_path()), to = place_of_folder(folder);
@@ -120,7 +122,7 @@ std::string moved_text(const MaterialLibrary& library, const fs::path& folder,
   return text;
 }
 
-/// `output` is the mesh or folder that notes name.
+/// `output` is the mesh or folder for the messages.
 WrittenMaterials written(const Materials& materials, const fs::path& folder, std::string name,
                          const fs::path& output) {
   WrittenMaterials result;

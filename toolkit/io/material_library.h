@@ -7,32 +7,33 @@
 
 #include "toolkit/mesh/tri_mesh.h"
 
-/// The .mtl files that OBJ files name.
+/// Material libraries (.mtl) of OBJ files.
 namespace mimetra {
 
-/// Those that `mesh` names in its `mtllib` statements, as they lie beside it. What is no file that
-/// ends in .mtl, or cannot be read, is missing. Null for no statements.
+/// Reads the libraries in the `mtllib` statements of `mesh`, relative to its folder. Files that do
+/// not end in .mtl, or that cannot be read, are listed as missing. Null if there are no statements.
 std::shared_ptr<const Materials> read_materials(const std::filesystem::path& mesh,
                                                 const std::vector<std::string>& statements);
 
-/// How materials go with OBJ files that are written.
+/// Material library to write with OBJ files.
 struct WrittenMaterials {
-  /// What the files' `mtllib` names; empty where there are no materials.
+  /// Name for the files' `mtllib`; empty if there are no materials.
   std::string name;
-  /// Text of the file of that name beside them; none where it lies there already.
+  /// Content of the file of that name beside them; none if the file exists already.
   std::optional<std::string> text;
-  /// What is to be said: textures that stay where they are, and materials that are missing.
+  /// Messages for the user: textures that stay in their folder, and missing materials.
   std::vector<std::string> notes;
 };
 
-/// For OBJ files in `folder`. A library keeps its name in a folder of its own; beside a single mesh
-/// it is called `stem`.mtl. Relative paths of textures are made to lead to where they lie.
+/// Materials for OBJ files in `folder`, or for the single file `mesh`. In a folder the library
+/// keeps its name; beside a mesh it is named after the mesh, as `STEM.mtl`. Relative texture paths
+/// are changed so that they still lead to the textures.
 WrittenMaterials materials_in_folder(const Connectivity& connectivity,
                                      const std::filesystem::path& folder);
 WrittenMaterials materials_beside(const Connectivity& connectivity,
                                   const std::filesystem::path& mesh);
 
-/// The same mesh, whose OBJ files name a library.
+/// Copy of `connectivity` whose OBJ files refer to the library `name`.
 Connectivity with_library(const Connectivity& connectivity, const std::string& name);
 
 }  // namespace mimetra

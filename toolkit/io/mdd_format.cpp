@@ -11,7 +11,8 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-/// Frames, vertices, then the time of each frame; all big-endian.
+/// Size of the header, in bytes: number of frames, number of vertices. The time of each frame
+/// follows; all numbers are big-endian.
 constexpr std::size_t kMddHeader = 2 * sizeof(std::int32_t);
 
 class MddFile : public StoredPointCache {
@@ -41,7 +42,7 @@ OpenSequence open_mdd(const fs::path& path, const SequenceSource& source, const 
   return open_point_cache(std::make_unique<const MddFile>(path), source, {}, context);
 }
 
-/// Seconds since midnight may be too many for single precision.
+/// Times such as seconds since midnight can be too large for single precision.
 void check_rounded_times(const fs::path& target, const Eigen::VectorXd& times) {
   for (Eigen::Index frame = 1; frame < times.size(); ++frame) {
     if (static_cast<float>(times[frame]) > static_cast<float>(times[frame - 1])) continue;

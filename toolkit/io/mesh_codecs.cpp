@@ -24,7 +24,7 @@ constexpr std::array kCodecs = {
               ply_frame,
               {.polygons = true, .texture = Texture::corners}},
     MeshCodec{MeshFormat::off, read_off, off_layout, off_frame, {.polygons = true}},
-    // A rest pose in the old order would not fit.
+    // STL renumbers the vertices, so a rest pose in the old order would not fit.
     MeshCodec{MeshFormat::stl,
               nullptr,
               nullptr,

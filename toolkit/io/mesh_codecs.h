@@ -13,39 +13,39 @@
 #include "toolkit/mesh/context.h"
 #include "toolkit/mesh/tri_mesh.h"
 
-/// The table of mesh formats: one reader and one writer for each, on bytes in memory. Internal to
-/// mesh_file.h, which chooses among them and checks what they return.
+/// Table of mesh formats: one reader and one writer for each, on bytes in memory. Internal to
+/// mesh_file.h, which selects the codec and checks what it returns.
 namespace mimetra {
 
-/// What a mesh file says, before anybody has checked that it makes sense.
+/// Content of a mesh file, not yet validated.
 struct MeshContent {
   std::vector<double> coordinates;  ///< x y z of each vertex
   Polygons polygons;
   TextureCoordinates texture;
   std::vector<FaceGroup> groups;
-  /// What follows each `mtllib`.
+  /// Text after each `mtllib`.
   std::vector<std::string> libraries;
-  /// Line of each face in a text file; empty where lines mean nothing.
+  /// Line of each face in a text file; empty for formats without lines.
   std::vector<int> face_lines;
-  /// How the format counts vertices, for messages: 1 for OBJ.
+  /// Number of the first vertex in messages: 1 for OBJ.
   int first_index = 0;
 };
 
-/// Throw IoError that names `path` and the line or the element, and Cancelled.
+/// Parse the bytes of a file. Throw IoError with `path` and the line or the element, and Cancelled.
 MeshContent read_obj(const std::string& path, std::string_view bytes, const Context&);
 MeshContent read_ply(const std::string& path, std::string_view bytes, const Context&);
 MeshContent read_off(const std::string& path, std::string_view bytes, const Context&);
 MeshContent read_om(const std::string& path, std::string_view bytes, const Context&);
-/// The properties of vertices and faces in one of OpenMesh's own files (.om) that are numbers:
-/// integers, bool, float, double, and vectors of two to four; others are left out. `connectivity`
-/// is that of the file. Throws IoError, Cancelled.
+/// Reads the numeric properties of vertices and faces from OpenMesh's own format (.om). These are
+/// integers, bool, float, double, and vectors of 2 to 4; others are listed in `left_out`.
+/// `connectivity` is the file's. Throws IoError, Cancelled.
 FieldsRead read_om_fields(const std::filesystem::path& path, const Connectivity& connectivity,
                           const Context& context = {});
-/// The corners of all triangles, one after the other, not welded (x y z each).
+/// Corners of all triangles in order, not welded (x y z each). Throws as the readers above.
 std::vector<double> read_stl_corners(const std::string& path, std::string_view bytes,
                                      const Context&);
 
-/// Reports progress once in some thousand lines or elements: `left` of `size` are not done yet.
+/// Reports progress every 16384 lines or elements: `left` of `size` are not done yet.
 inline void report_element(const Context& context, std::size_t element, std::size_t left,
                            std::size_t size) {
   constexpr std::size_t kElements = 1 << 14;
@@ -53,16 +53,16 @@ inline void report_element(const Context& context, std::size_t element, std::siz
   context.report(1 - static_cast<double>(left) / static_cast<double>(size));
 }
 
-/// The bytes of all files of one mesh, in a format and a precision.
+/// Bytes of the files of one mesh, in one format and precision.
 struct MeshFrame {
-  std::string before;  ///< what stands before the positions
-  std::string after;   ///< what stands behind them
-  /// What stands between for some positions. Safe to call from several threads.
+  std::string before;  ///< bytes before the positions
+  std::string after;   ///< bytes after them
+  /// Returns the bytes of the given positions. Safe to call from several threads.
   std::function<std::string(const PositionsView&)> positions;
 };
 
-/// Coordinates are floats unless `double_precision` or a texture needs more, in STL always. No
-/// reference to the connectivity is kept. Throw Cancelled.
+/// Coordinates are floats unless `double_precision` is set or a texture coordinate needs more; STL
+/// always has floats. The frame keeps no reference to the connectivity. Throw Cancelled.
 MeshFrame obj_frame(const Connectivity& connectivity, const std::vector<Field>& fields,
                     bool double_precision, const Context&);
 MeshFrame ply_frame(const Connectivity& connectivity, const std::vector<Field>& fields,
@@ -71,25 +71,25 @@ MeshFrame off_frame(const Connectivity& connectivity, const std::vector<Field>& 
                     bool double_precision, const Context&);
 MeshFrame stl_frame(const Connectivity& connectivity, const std::vector<Field>& fields,
                     bool double_precision, const Context&);
-/// With the fields as properties, which the other formats have no place for. Throws MismatchError
-/// that names a vertex or a face which half-edges cannot hold, or a field which the file cannot.
+/// Stores the fields as properties, which the other formats cannot. Throws MismatchError for a
+/// vertex or face that half-edges cannot represent, and for a field that the format cannot store.
 MeshFrame om_frame(const Connectivity& connectivity, const std::vector<Field>& fields,
                    bool double_precision, const Context&);
 
-/// What the files of one mesh have in common, learnt from the first of them.
+/// Layout that the files of one mesh share, learnt from the first file.
 class MeshLayout {
  public:
   virtual ~MeshLayout() = default;
 
-  /// Reads x y z of each vertex of a further file into `coordinates`. Bytes around the positions
-  /// are compared with the first file's. False, with anything in `coordinates`, where they differ
-  /// in what faces depend on, where a position is malformed or not finite, or where the file is
-  /// written in a way that only the format's whole reader knows.
+  /// Reads x y z of each vertex of a further file into `coordinates`, and compares the bytes around
+  /// the positions with the first file's. Returns false, with unspecified `coordinates`, if bytes
+  /// differ that affect faces, if a position is malformed or not finite, or if only the format's
+  /// full reader can parse the file.
   virtual bool read(std::string_view bytes, std::span<double> coordinates) const = 0;
 };
 
-/// Learn the layout from the bytes of a first file, in which the format's reader found so many
-/// vertices. Null if the file is written in a way that only that reader knows. Throw Cancelled.
+/// Learn the layout from the bytes of a first file, in which the format's reader found `vertices`
+/// vertices. Null if only that reader can parse the file. Throw Cancelled.
 std::unique_ptr<const MeshLayout> obj_layout(std::string first, std::size_t vertices,
                                              const Context&);
 std::unique_ptr<const MeshLayout> ply_layout(std::string first, std::size_t vertices,
@@ -97,37 +97,37 @@ std::unique_ptr<const MeshLayout> ply_layout(std::string first, std::size_t vert
 std::unique_ptr<const MeshLayout> off_layout(std::string first, std::size_t vertices,
                                              const Context&);
 
-/// A format, declared once.
+/// One mesh format.
 struct MeshCodec {
   MeshFormat format;
-  /// Null for STL, whose files name no vertices.
+  /// Null for STL, whose files do not index vertices.
   MeshContent (*read)(const std::string& path, std::string_view bytes, const Context&);
-  /// From the bytes of the first file and its vertex count; null for a format whose files have
-  /// nothing in common.
+  /// Layout from the bytes of the first file and its vertex count; null if files of the format
+  /// share nothing.
   std::unique_ptr<const MeshLayout> (*layout)(std::string first, std::size_t vertices,
                                               const Context&);
   MeshFrame (*frame)(const Connectivity& connectivity, const std::vector<Field>& fields,
                      bool double_precision, const Context&);
-  /// In its files; a rest pose stands beside them.
+  /// Parts that its files can store. A rest pose counts if it is stored beside them.
   HeldParts holds;
-  /// Fields in a file; null for a format without.
+  /// Reads the fields in a file; null if the format has none.
   FieldsRead (*fields)(const std::filesystem::path& path, const Connectivity&,
                        const Context&) = nullptr;
 
-  /// ".ply".
+  /// Extension with its dot, such as ".ply".
   std::string extension() const;
 };
 
-/// The format of an extension (".ply") in any case; null for one that is no mesh format.
+/// Format of an extension (".ply") in any case; null if it is not a mesh format.
 const MeshCodec* mesh_codec(const std::string& extension);
 
-/// False where single precision would make a texture coordinate infinite.
+/// False if single precision would make a texture coordinate infinite.
 bool fits_single_precision(const TextureCoordinates& texture);
-/// A line "x y z" for each vertex, with `before` in front of it.
+/// Lines "x y z", one for each vertex, each with `before` in front.
 std::string position_lines(std::string_view before, const PositionsView& positions,
                            bool double_precision);
 
-/// x y z of each vertex, least significant byte first.
+/// Bytes of x y z of each vertex, least significant byte first.
 template <typename Scalar>
 std::string position_bytes(const PositionsView& positions) {
   std::string bytes(sizeof(Scalar) * static_cast<std::size_t>(positions.size()), '\0');

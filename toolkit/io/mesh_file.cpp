@@ -55,7 +55,7 @@ std::string face_name(const MeshContent& content, int face) {
 
 void check_faces(const std::string& path, const MeshContent& content) {
   const Polygons& polygons = content.polygons;
-  // Vertices, triangles and corners are counted by ints.
+  // Vertices, triangles and corners are counted in ints.
   constexpr std::size_t kMost = std::numeric_limits<int>::max() / 3;
   if (content.coordinates.size() / 3 > kMost || polygons.corners.size() > kMost) {
     throw IoError(path, "has " + std::to_string(content.coordinates.size() / 3) + " vertices and " +
@@ -101,7 +101,7 @@ std::vector<double> read_checked_corners(const fs::path& path, std::string_view 
   return corners;
 }
 
-/// Vertices in the order in which the file first uses their place.
+/// Numbers the vertices in the order in which the file first uses their positions.
 TriMesh read_stl(const fs::path& path, std::string_view bytes, const Context& context) {
   const Positions corners = positions_of(read_checked_corners(path, bytes, context));
   const Weld weld = Weld::exact(corners);
@@ -128,9 +128,11 @@ TriMesh read_stl(const fs::path& path, std::string_view bytes, const Context& co
                       std::to_string(expected) + " as in " + expected_path.string());
 }
 
-/// STL names no vertices: triangles that are flipped or in another order show only in shared
-/// vertices whose corners are at several places, and so do lips and lids that touch in the first
-/// frame, but those are never most of a mesh.
+/// Throws MismatchError if corners that share a vertex lie apart.
+///
+/// STL does not index vertices, so flipped or reordered triangles show only in shared vertices with
+/// corners at several places. Lips and lids that touch in the first frame look the same, but they
+/// are never most of a mesh.
 void check_parting(const fs::path& path, const std::vector<int>& corners_at,
                    const std::vector<char>& parts, const fs::path& expected_path) {
   const auto shared =
@@ -163,7 +165,7 @@ Positions gathered_corners(const fs::path& path, std::string_view bytes,
   Positions positions(expected.vertices, 3);
   std::vector<int> corners_at(static_cast<std::size_t>(expected.vertices), 0);
   std::vector<char> parts(static_cast<std::size_t>(expected.vertices), 0);
-  // Rounding of the last digit is none.
+  // Differences in the last digit of a float do not count.
   const double parted = 1e-6 * box_diagonal(corners);
   for (Eigen::Index corner = 0; corner < corners.rows(); ++corner) {
     const int vertex = expected.triangles(corner / 3, corner % 3);
@@ -191,10 +193,10 @@ std::string corners_of(const Polygons& polygons, int face, int first_index) {
 
 void check_same_faces(const fs::path& path, const MeshContent& content,
                       const Connectivity& expected, const fs::path& expected_path) {
-  // Equal lists are the rule and need no triangulation.
+  // Usually the lists are equal, and then no triangulation is needed.
   if (content.polygons == expected.polygons) return;
   const Connectivity found = Connectivity::from_polygons(expected.vertices, content.polygons);
-  // In another order, or cut otherwise, but none flipped.
+  // Accept faces in another order or triangulated otherwise, but not flipped ones.
   const std::optional<Connectivity> ordered = in_order_of(expected, found);
   if (ordered && ordered->triangles == expected.triangles) return;
   if (content.polygons.size() != expected.polygons.size()) {
@@ -208,7 +210,7 @@ void check_same_faces(const fs::path& path, const MeshContent& content,
                       expected_path.string());
 }
 
-/// True where a file has corners of triangles only.
+/// True if the format stores corners of triangles without indices.
 bool names_no_vertices(const fs::path& path) {
   return !mesh_codec(lower_extension(path))->read;
 }
@@ -303,7 +305,7 @@ void MeshFileWriter::write(const fs::path& path, const PositionsView& positions)
   }
   Eigen::Index vertex = 0, axis = 0;
   const double farthest = vertices_ == 0 ? 0 : positions.cwiseAbs().maxCoeff(&vertex, &axis);
-  // What is infinite already stays so.
+  // Values that are already infinite stay infinite.
   if (single_precision_ && farthest > kLargestSingle && std::isfinite(farthest)) {
     throw MismatchError(committed_name(path).string() + ": " + beyond_single(vertex, farthest));
   }

@@ -17,35 +17,37 @@ class MeshLayout;
 struct MeshFrame;
 
 /// Reads one mesh by its extension: .obj, .ply (ascii, binary little and big endian), .off, .om
-/// (OpenMesh's own), .stl (ascii and binary; corners at one place become one vertex, in order of
-/// first use). Vertices and polygons keep the file's order and count, whatever the surface looks
-/// like. Throws IoError, Cancelled.
+/// (OpenMesh's own), or .stl (ascii and binary). STL corners at the same position become one
+/// vertex, in order of first use. Vertices and polygons keep the file's order and count, whatever
+/// the surface looks like. Throws IoError, Cancelled.
 TriMesh read_mesh(const std::filesystem::path& path, const Context& context = {});
 
 /// Reads the positions of a further file of the same mesh and compares its faces with `expected`.
-/// For STL, corners are gathered by `expected`'s triangles, so that vertices which part or meet in
-/// this frame stay what they are. Throws IoError; MismatchError if the vertex count or a face
-/// differs; Cancelled. `expected_path` is the file that the message compares with.
+/// Faces may come in another order. STL corners are assigned to vertices by `expected`'s triangles,
+/// so vertices that coincide only in this frame stay separate.
+///
+/// Throws IoError; MismatchError if the vertex count or a face differs, or if the corners of an STL
+/// vertex lie apart; Cancelled. The message compares the file with `expected_path`.
 Positions read_positions(const std::filesystem::path& path, const Connectivity& expected,
                          const std::filesystem::path& expected_path, const Context& context = {});
 
-/// Reads the files of one mesh: the first one whole, of a further one only what is new in it.
+/// Reads the files of one mesh: the first file completely, and the positions of further ones.
 ///
-/// Of a further file the positions are parsed and what faces depend on is compared with the first
-/// file, byte by byte; where that differs, the file is read as by read_positions(). Positions
-/// and errors are the same either way. Queries may run from several threads.
+/// In a further file, the bytes that affect faces are compared with the first file's. If they
+/// differ, the file is read as by read_positions(). Positions and errors are the same either way.
+/// Queries may run from several threads.
 class MeshFileReader {
  public:
-  /// Throws as read_mesh.
+  /// Throws as read_mesh().
   explicit MeshFileReader(std::filesystem::path first, const Context& context = {});
   ~MeshFileReader();
 
   const std::filesystem::path& first() const { return first_; }
   const TriMesh& mesh() const { return mesh_; }
-  /// The positions of a further file (N x 3). Throws as read_positions.
+  /// Positions of a further file (N x 3). Throws as read_positions().
   Positions read(const std::filesystem::path& path) const;
-  /// The same into x y z of each vertex, such as a row of Frames; undefined where it throws. \pre
-  /// 3N coordinates
+  /// Reads the positions into x y z of each vertex, such as a row of Frames. If it throws,
+  /// `coordinates` are unspecified. Throws std::invalid_argument unless there are 3N coordinates.
   void read(const std::filesystem::path& path, std::span<double> coordinates) const;
 
  private:
@@ -54,48 +56,54 @@ class MeshFileReader {
   std::unique_ptr<const MeshLayout> layout_;
 };
 
-/// What a folder of files in a format has a place for.
+/// Parts that a folder of files in a format can store.
 HeldParts parts_held_by(MeshFormat format);
 
 struct MeshWriteOptions {
-  /// Coordinates in double precision: binary doubles in PLY, the shortest digits that read back
-  /// equal in text formats; float otherwise. STL knows float only.
+  /// Coordinates in double precision: binary doubles in PLY and OM, the shortest digits that read
+  /// back equal in text formats. Float otherwise, and always in STL.
   bool double_precision = false;
-  /// Extension (".ply") of the format to write; empty for the path's own. For paths whose extension
-  /// says nothing, such as PendingOutput's.
+  /// Extension (".ply") of the format to write; empty for the path's own. Set it for paths without
+  /// a meaningful extension, such as PendingOutput's.
   std::string extension = {};
-  /// As properties of .om; of other formats none are written.
+  /// Fields to store as properties of .om. Other formats do not store them.
   std::vector<Field> fields = {};
 
   static constexpr Option kDoublePrecision{"double_precision", &MeshWriteOptions::double_precision};
   static constexpr auto declared() { return std::tuple(kDoublePrecision); }
 };
 
-/// Writes one mesh by its extension with its own polygons: .obj (with texture coordinates and
-/// groups; not with the library of its materials, which a sequence has beside it), .ply (binary
-/// little endian, with texture coordinates), .off, .om (with texture coordinates), .stl (binary,
-/// triangles). Throws OutputError, MismatchError for values that the precision or the format
-/// cannot hold, Cancelled. Not atomic: see PendingOutput.
+/// Writes one mesh with its polygons, in the format of the extension:
+///  - .obj, with texture coordinates and groups, but without the material library, which a sequence
+///    writes beside it;
+///  - .ply, binary little endian, with texture coordinates;
+///  - .off;
+///  - .om, with texture coordinates;
+///  - .stl, binary, as triangles.
+///
+/// Throws OutputError, MismatchError for values that the precision or the format cannot hold,
+/// Cancelled. Not atomic: see PendingOutput.
 void write_mesh(const std::filesystem::path& path, const PositionsView& positions,
                 const Connectivity& connectivity, const MeshWriteOptions& = {},
                 const Context& context = {});
 void write_mesh(const std::filesystem::path& path, const TriMesh& mesh,
                 const MeshWriteOptions& = {}, const Context& context = {});
 
-/// Writes poses of one mesh, each to a file of its own. What the files have in common is made once.
+/// Writes poses of one mesh, each to its own file. The bytes that the files share are made once.
 /// Files may be written from several threads.
 class MeshFileWriter {
  public:
-  /// `extension` and `fields` as in MeshWriteOptions; throws std::invalid_argument for one that is
-  /// not a mesh format, MismatchError that begins with `name` for what .om cannot hold.
+  /// `extension` and `fields` are as in MeshWriteOptions. Throws std::invalid_argument if the
+  /// extension is not a mesh format, and MismatchError, which begins with `name`, for data that .om
+  /// cannot hold.
   MeshFileWriter(const Connectivity& connectivity, const std::string& extension,
                  bool double_precision = false, const std::vector<Field>& fields = {},
                  const std::string& name = "the mesh", const Context& context = {});
   ~MeshFileWriter();
 
-  /// Writes what write_mesh() writes. Throws OutputError; MismatchError that names a vertex whose
-  /// coordinate single precision would make infinite; std::invalid_argument unless `positions` are
-  /// as many as the connectivity's vertices.
+  /// Writes the same file as write_mesh(). Throws OutputError; MismatchError for a vertex whose
+  /// coordinate single precision would make infinite; std::invalid_argument unless there is one
+  /// position for each vertex of the connectivity.
   void write(const std::filesystem::path& path, const PositionsView& positions) const;
 
  private:

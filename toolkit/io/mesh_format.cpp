@@ -19,7 +19,7 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-/// A mesh file for each frame.
+/// Frames with one mesh file each.
 class FrameFiles : public FrameSource {
  public:
   FrameFiles(std::unique_ptr<const MeshFileReader> reader, std::vector<fs::path> files,
@@ -48,9 +48,9 @@ class FrameFiles : public FrameSource {
   std::vector<fs::path> files_;
 };
 
-/// What stands beside the folder of a sequence's files.
+/// Data beside the folder of a sequence's files.
 struct KnownBeside {
-  std::optional<Eigen::VectorXd> times = {};  ///< of the files
+  std::optional<Eigen::VectorXd> times = {};  ///< seconds of each file
   std::optional<Positions> rest = {};
 };
 
@@ -67,8 +67,8 @@ bool has_companion(const fs::path& folder) {
          fs::exists(beside(name_with(folder, kRestSuffix), kRestSuffix));
 }
 
-/// What stands beside the folder that a pattern takes several frames of; nothing, with a note, for
-/// other files of the folder. One mesh is no part of a sequence.
+/// Data beside the folder in which a pattern selects several frames. If the files include others
+/// than the folder's frames, there is a note and no data. A single mesh is not part of a sequence.
 KnownBeside known_of_folder(const std::vector<fs::path>& files, const MeshFileReader& reader,
                             OpenSequence& open) {
   const fs::path home = fs::absolute(files.front()).lexically_normal().parent_path();
@@ -122,7 +122,7 @@ class FolderSink : public FrameSink {
       write_bytes(folder_ / materials.name, *materials.text);
       files_.push_back(target_ / materials.name);
     }
-    // A manifest may have megabytes: it is written and not kept.
+    // A manifest may have megabytes, so it is written now and not kept.
     for (const auto& [name, content] : extra) {
       write_bytes(folder_ / name, content);
       files_.push_back(target_ / name);
@@ -141,7 +141,7 @@ class FolderSink : public FrameSink {
     std::vector<fs::path> files = files_;
     const fs::path manifest = target_ / kFolderManifest;
     if (std::ranges::find(files, manifest) == files.end()) files.push_back(manifest);
-    // A format without vertices numbers them anew, so that a rest pose in the old order would not
+    // A format without indices renumbers the vertices, so a rest pose in the old order would not
     // fit.
     SequenceHeader kept = header_;
     kept.rest_is_known = kept.rest_is_known && mesh_codec(extension_)->read;
@@ -160,7 +160,7 @@ class FolderSink : public FrameSink {
   fs::path folder_;
   std::vector<fs::path> files_;
   MeshFileWriter writer_;
-  /// Of poses far from the origin.
+  /// Writer for poses far from the origin.
   MeshFileWriter exact_writer_;
 };
 
@@ -174,7 +174,8 @@ OpenSequence open_frames(const FrameSeries& series, const fs::path& folder,
   open.notes = series.notes;
   for (const int frame : chosen) open.files.push_back(files[static_cast<std::size_t>(frame)]);
   std::vector<fs::path> frames = open.files;
-  // Where files name no vertices, the first frame says which corners are one, asked for or not.
+  // If files do not index vertices, the first frame decides which corners are one vertex, whether
+  // or not it is selected.
   const bool names_vertices = mesh_codec(files[0].extension().string())->read;
   auto reader =
       std::make_unique<const MeshFileReader>(names_vertices ? frames[0] : files[0], context);
@@ -217,7 +218,7 @@ std::unique_ptr<FrameSink> begin_folder(const SequenceHeader& header, const fs::
 
 namespace {
 
-/// One mesh is a sequence of one frame.
+/// Opens one mesh as a sequence of one frame.
 OpenSequence open_mesh(const fs::path& path, const SequenceSource& source, const Context& context) {
   return open_frames({{path}}, {}, source, context);
 }
@@ -269,7 +270,7 @@ class MeshSink : public FrameSink {
   std::vector<Field> fields_;
   PendingOutputs outputs_;
   fs::path path_;
-  /// Of its materials; empty where none is written.
+  /// Path of its material library; empty if none is written.
   fs::path library_;
 };
 

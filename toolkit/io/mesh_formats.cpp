@@ -19,8 +19,8 @@ std::string beyond_single(Eigen::Index vertex, double coordinate) {
 }
 
 bool needs_double(const PositionsView& poses, double extent) {
-  constexpr double kRounding = 6e-8;     // of float32, relative
-  constexpr double kMostRounded = 1e-5;  // of the longest side: well below what one sees
+  constexpr double kRounding = 6e-8;     // relative rounding of float32
+  constexpr double kMostRounded = 1e-5;  // relative to the longest side; well below what is visible
   const double farthest = poses.cwiseAbs().maxCoeff();
   return farthest > kLargestSingle || kRounding * farthest > kMostRounded * extent;
 }
@@ -75,7 +75,7 @@ bool has_statement(const Connectivity& connectivity, std::string_view keyword) {
   });
 }
 
-/// True where numbering the places of corners by their first use gives every vertex its number.
+/// True if numbering positions by their first use in the triangles keeps every vertex's number.
 bool is_numbered_by_use(const FrameSource& sequence) {
   int vertices = 0;
   for (const VertexIndex vertex : sequence.triangles().reshaped<Eigen::RowMajor>()) {
@@ -104,8 +104,8 @@ void add_lost_texture(std::vector<std::string>& lost, const HeldParts& held,
   }
 }
 
-/// The most that single precision changes a time by, in seconds; 0 where no step changes by more
-/// than a thousandth of the shortest.
+/// Largest change of a time by rounding to single precision, in seconds. Returns 0 if that is at
+/// most a thousandth of the shortest step.
 double rounding_of(const Eigen::VectorXd& times) {
   constexpr double kLeastShare = 1e-3;
   if (times.size() < 2) return 0;
@@ -115,8 +115,8 @@ double rounding_of(const Eigen::VectorXd& times) {
   return rounded > kLeastShare * step ? rounded : 0;
 }
 
-/// How far the furthest time is from where it would be if all were evenly apart, in seconds; 0
-/// where that is no more than a hundredth of what lies between two.
+/// Largest distance of a time from even spacing, in seconds. Returns 0 if that is at most a
+/// hundredth of the mean step.
 double unevenness_of(const Eigen::VectorXd& times) {
   constexpr double kLeastShare = 0.01;
   if (times.size() < 3) return 0;

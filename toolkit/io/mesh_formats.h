@@ -9,12 +9,12 @@
 #include "toolkit/mesh/fields.h"
 #include "toolkit/mesh/frame_source.h"
 
-/// Formats of meshes by their names, what files hold, and what float32 makes of positions.
+/// Names of mesh formats, what their files can store, and the effect of float32 on positions.
 namespace mimetra {
 
 enum class MeshFormat { ply, obj, off, stl, om };
 
-/// As people choose it; with a dot before it, its extension.
+/// Name that users write; with a dot in front, it is the extension.
 constexpr std::string_view choice_name(MeshFormat value) {
   switch (value) {
     case MeshFormat::ply:
@@ -31,72 +31,72 @@ constexpr std::string_view choice_name(MeshFormat value) {
   return {};
 }
 
-/// True for an extension (".obj") of a mesh format, in any case.
+/// True for the extension (".obj") of a mesh format, in any case.
 bool is_mesh_extension(const std::string& extension);
-/// All of them, in lower case.
+/// Extensions of all mesh formats, in lower case.
 std::vector<std::string> mesh_extensions();
-/// What is wrong with an extension in lower case that is_mesh_extension() refuses.
+/// Message about a lower-case extension that is_mesh_extension() refuses.
 std::string unknown_mesh_extension(const std::string& extension);
 
-/// What the files of a format have a place for besides poses and triangles, declared once with the
-/// format. What stands in files beside them (NAME.rest.ply, NAME.topology.ply) counts.
+/// Parts, besides poses and triangles, that a format can store. Files beside the main one
+/// (NAME.rest.ply, NAME.topology.ply) count as part of it.
 struct HeldParts {
   enum class Texture { none, vertices, corners };
 
-  /// Faces of more than three corners.
+  /// Faces with more than three corners.
   bool polygons = false;
-  /// Texture coordinates: none, one for each vertex, or one for each corner of a face.
+  /// Texture coordinates: none, one per vertex, or one per corner of a face.
   Texture texture = Texture::none;
-  /// Faces without texture coordinates where others have them.
+  /// Faces without texture coordinates in a mesh where other faces have them.
   bool bare_faces = true;
-  /// Groups, and which material a face has.
+  /// Groups, and the material of each face.
   bool groups = false;
-  /// A rest pose that is no frame.
+  /// A rest pose that is not a frame.
   bool rest = true;
-  /// Vertices in their order; otherwise they are numbered anew.
+  /// The order of vertices; otherwise the format renumbers them.
   bool vertex_order = true;
-  /// Times at all.
+  /// Times of frames.
   bool times = true;
-  /// Times that are not evenly apart, where other programs find them.
+  /// Unevenly spaced times, in a place that other programs read.
   bool uneven_times = true;
-  /// Times as they are; otherwise in single precision.
+  /// Times in double precision; otherwise they are rounded to single precision.
   bool exact_times = true;
-  /// Positions in double precision where single precision would round motion that one sees, or not
-  /// at all there; otherwise rounded.
+  /// True if positions that single precision would round visibly are stored in double precision or
+  /// refused; false if they are rounded.
   bool exact_positions = true;
 
   bool operator==(const HeldParts&) const = default;
 };
 
-/// "polygons, UVs per corner, groups, rest pose": what `held` says, for lists of formats.
+/// Summary for lists of formats, such as "polygons, UVs, groups and materials, rest pose".
 std::string description(const HeldParts& held);
 
-/// What a format leaves out of a sequence, in words such as "texture coordinates"; none where it
-/// holds all. Reads one frame where the rest pose may be equal to it.
+/// Parts of a sequence that a format cannot store, such as "texture coordinates"; empty if it
+/// stores all. Reads a frame only if the sequence has one frame and its rest pose cannot be stored.
 std::vector<std::string> parts_left_out(const HeldParts& held, const FrameSource& sequence);
 
-/// The fields in a mesh file.
+/// Fields read from a mesh file.
 struct FieldsRead {
   std::vector<Field> fields = {};
-  /// What of it is no field, for notes: names of properties.
+  /// Names of properties that are not fields, for messages.
   std::vector<std::string> left_out = {};
 };
 
-/// The largest number of single precision.
+/// Largest finite number of single precision.
 inline constexpr double kLargestSingle = std::numeric_limits<float>::max();
-/// "vertex 7 is at 1e+39, ...": what is wrong with a coordinate beyond it.
+/// Message about a coordinate beyond that limit: "vertex 7 is at 1e+39, ...".
 std::string beyond_single(Eigen::Index vertex, double coordinate);
 
-/// True where single precision would round motion away, or cannot hold a coordinate: `poses` lie
-/// far from the origin for a mesh whose longest side is `extent`.
+/// True if single precision would round motion visibly or cannot hold a coordinate. This happens if
+/// `poses` lie far from the origin relative to the mesh's longest side, `extent`.
 bool needs_double(const PositionsView& poses, double extent);
 
-/// Throws MismatchError that names frame and vertex where single precision would make a coordinate
-/// infinite. `poses` are the frames from `first` on.
+/// Throws MismatchError with frame and vertex if single precision would make a coordinate infinite.
+/// `poses` are the frames from `first` on.
 void check_single_range(const std::filesystem::path& target, int first, const Frames& poses);
-/// Whether a format knows nothing else, or was asked for it.
+/// Whether the format has single precision only, or the user asked for it.
 enum class SinglePrecision { only, asked };
-/// Throws MismatchError where a `target` in single precision needs_double().
+/// Throws MismatchError if `target` has single precision but needs_double() is true.
 void check_single_precision(const std::filesystem::path& target, const PositionsView& poses,
                             double extent, SinglePrecision why = SinglePrecision::only);
 

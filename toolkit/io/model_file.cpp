@@ -36,7 +36,7 @@ double coefficient_of(const std::string& entry, const std::string& number) {
   return value;
 }
 
-/// `at` is the last '@'; the file's folders may hold others.
+/// `at` is the offset of the last '@'; the file's folders may contain others.
 ModelSpec with_fit(const std::string& text, std::size_t at) {
   for (auto here = text.find('@'); here < at; here = text.find('@', here + 1)) {
     if (is_there(text.substr(0, here))) at = here;
@@ -85,7 +85,7 @@ ModelSpec ModelSpec::parse(const std::string& text) {
 }
 
 std::vector<std::string> ModelSpec::notes() const {
-  // Standard deviations, or shares of an identity.
+  // In standard deviations, or as factors of an identity.
   constexpr double kMostDeviations = 10;
   std::vector<std::string> notes;
   for (const auto& [identity_name, coefficient] : identity) {
@@ -102,7 +102,7 @@ std::vector<std::string> ModelSpec::notes() const {
 }
 
 std::string ModelSpec::name() const {
-  // "." and "ict-face/" are named after their folder too.
+  // For "." and "ict-face/", use the folder's name.
   const fs::path last = without_trailing_slash(fs::absolute(path));
   std::error_code unreadable;
   const std::string stem =
@@ -115,8 +115,8 @@ std::string ModelSpec::name() const {
 
 namespace {
 
-/// Regular files of a folder in natural order, and links that lead nowhere, which reading refuses;
-/// none where it is not a folder.
+/// Regular files and dangling links of a folder, in natural order; reading a dangling link fails
+/// later. Empty if `folder` is not a folder.
 std::vector<fs::path> sorted_files_in(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
@@ -133,7 +133,7 @@ std::vector<fs::path> sorted_files_in(const fs::path& folder) {
   return files;
 }
 
-/// The file of a folder whose name starts with `start` and ends with `end`.
+/// First file of a folder whose name starts with `start` and ends with `end`.
 std::optional<fs::path> file_like(const fs::path& folder, const std::string& start,
                                   const std::string& end) {
   for (const fs::path& file : sorted_files_in(folder)) {
@@ -143,7 +143,7 @@ std::optional<fs::path> file_like(const fs::path& folder, const std::string& sta
   return {};
 }
 
-/// The shape model of an eos pair: by its usual name, else by what it starts with.
+/// Shape model of an eos pair, found by its usual name or else by its first bytes.
 std::optional<fs::path> eos_shape_of(const fs::path& folder) {
   if (const auto usual = file_like(folder, "sfm_shape", ".bin")) return usual;
   for (const fs::path& file : sorted_files_in(folder)) {
@@ -169,7 +169,7 @@ std::optional<fs::path> neutral_of(const fs::path& folder) {
   return found == meshes.end() ? std::nullopt : std::optional(*found);
 }
 
-/// Folders in a folder, in the order of their names.
+/// Subfolders, sorted by name.
 std::vector<fs::path> folders_in(const fs::path& folder) {
   std::vector<fs::path> folders;
   std::error_code error;
@@ -182,8 +182,7 @@ std::vector<fs::path> folders_in(const fs::path& folder) {
   return folders;
 }
 
-/// The folder of one of these names, of several the first; of names in another case where there is
-/// none.
+/// First subfolder with one of the names; ignores case if none matches exactly.
 std::optional<fs::path> folder_called(const fs::path& parent,
                                       const std::vector<std::string>& names) {
   const std::vector<fs::path> folders = folders_in(parent);
@@ -214,7 +213,7 @@ std::optional<fs::path> identities_in(const fs::path& folder) {
                                    other.filename().string() + "; rename or remove one of them");
 }
 
-/// A shape is called as its file without the extension.
+/// Throws IoError if two files have the same stem, since that is the shape's name.
 void check_names(const std::vector<fs::path>& files) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -223,11 +222,11 @@ void check_names(const std::vector<fs::path>& files) {
   }
 }
 
-/// Where the parts of a model are.
+/// Paths of a model's parts.
 struct Parts {
   std::optional<fs::path> neutral;
   std::optional<fs::path> shape;        // eos
-  std::optional<fs::path> expressions;  // a folder, or the blendshapes of eos
+  std::optional<fs::path> expressions;  // a folder, or the eos blendshapes
   std::optional<fs::path> identities;
 };
 
@@ -272,7 +271,7 @@ Parts parts_of(const fs::path& folder) {
   return parts;
 }
 
-/// Absolute shapes of a folder, minus the neutral.
+/// Reads the absolute shapes in a folder and subtracts the neutral.
 ShapeBasis read_shapes(const fs::path& folder, const MeshFileReader& neutral,
                        const Context& context) {
   ShapeBasis basis;
@@ -302,14 +301,14 @@ ShapeBasis shapes_or_none(const std::optional<fs::path>& folder, const MeshFileR
   return {{}, Eigen::MatrixXd(neutral.mesh().positions.size(), 0)};
 }
 
-/// "63 identities, from '0' to '62'".
+/// Description of identities for messages, such as "63 identities, from '0' to '62'".
 std::string counted(const std::vector<std::string>& names) {
   if (names.empty()) return "no identities";
   return std::to_string(names.size()) + " identities, from '" + names.front() + "' to '" +
          names.back() + "'";
 }
 
-/// Coefficients in the model's order.
+/// Fitted coefficients, in the model's order of identities.
 Eigen::VectorXd fitted_identity(const ShapeBasis& identities, const ModelSpec& spec) {
   const FittedCoefficients fit = read_fit(*spec.fit);
   const Eigen::VectorXd alpha = fit.identity();
@@ -326,7 +325,8 @@ Eigen::VectorXd fitted_identity(const ShapeBasis& identities, const ModelSpec& s
                       "; it was fitted with another model");
 }
 
-/// A name becomes a file's name: it must stay in its folder, and be found there again.
+/// Throws OutputError for a name that would leave its folder, or that reading would skip as a
+/// hidden file.
 void check_shape_name(const std::string& name) {
   if (!name.empty() && name.front() != '.' && name.find('/') == std::string::npos) return;
   throw OutputError(name + ".ply",
@@ -353,8 +353,8 @@ void write_shapes(const fs::path& folder, const ShapeBasis& basis, const Morphab
   }
 }
 
-/// What to say of meshes in folders of the folder of expressions, and in those beside it that have
-/// the name of such a folder.
+/// Notes on meshes in subfolders of the expressions, and in the model's folders with a name that is
+/// usual for expressions.
 std::vector<std::string> notes_beside(const fs::path& model, const fs::path& expressions) {
   const std::vector<std::string> known = {"expressions",  "targets",      "blendshapes",
                                           "blend_shapes", "shapes",       "morphs",
@@ -459,7 +459,7 @@ MorphableModel read_model(const fs::path& path, const Context& context) {
     return MorphableModel(std::move(connectivity), neutral.mesh().positions, std::move(identities),
                           std::move(expressions));
   } catch (const std::invalid_argument& error) {
-    // smile.obj beside smile.ply: two shapes of one name.
+    // Two shapes have one name, such as smile.obj and smile.ply.
     throw IoError(path.string(), error.what());
   }
 }

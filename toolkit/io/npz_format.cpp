@@ -25,7 +25,7 @@ namespace {
 struct OpenZip {
   fs::path path;
   zip_t* archive = nullptr;
-  /// The library serves one thread at a time.
+  /// libzip is not thread-safe.
   std::mutex mutex;
 
   ~OpenZip() {
@@ -44,7 +44,7 @@ std::string zip_reason(int code) {
   return reason;
 }
 
-/// A member of an archive, open for reading.
+/// Member of an archive, open for reading.
 class ZipMember : public InputBytes {
  public:
   ZipMember(std::shared_ptr<OpenZip> zip, std::string name, zip_file_t* file, std::size_t size)
@@ -63,14 +63,14 @@ class ZipMember : public InputBytes {
   std::size_t size_;
 };
 
-/// A member that is not compressed.
+/// Uncompressed member.
 class StoredMember : public ZipMember {
  public:
   using ZipMember::ZipMember;
 
   void read(std::size_t offset, char* to, std::size_t bytes) const override {
     if (offset > size_ || bytes > size_ - offset) zip_->fail(name_, "it is truncated");
-    if (bytes == 0) return;  // the library crashes where it seeks in a member without bytes
+    if (bytes == 0) return;  // libzip crashes on a seek in an empty member
     const std::lock_guard lock(zip_->mutex);
     if (zip_fseek(file_, static_cast<zip_int64_t>(offset), SEEK_SET) != 0) fail();
     for (std::size_t done = 0; done < bytes;) {
@@ -85,10 +85,11 @@ class StoredMember : public ZipMember {
   [[noreturn]] void fail() const { zip_->fail(name_, zip_file_strerror(file_)); }
 };
 
-/// What a reader asks for first, to see whether the rest is what it expects.
+/// Bytes that are decoded first. Readers check the header in them before they ask for the rest.
 constexpr std::size_t kFirstBytes = std::size_t{1} << 17;
 
-/// A compressed member: its beginning is decoded alone, all of it once more is asked for.
+/// Compressed member. A read within the first kFirstBytes decodes only those; any other read
+/// decodes all.
 class DeflatedMember : public ZipMember {
  public:
   using ZipMember::ZipMember;
@@ -111,7 +112,7 @@ class DeflatedMember : public ZipMember {
       done += static_cast<std::size_t>(now);
     }
     char beyond = 0;
-    // Only behind the last byte does the library compare checksums.
+    // libzip compares the checksum only on a read beyond the last byte.
     if (end == size_ && zip_fread(file_, &beyond, 1) < 0) fail(zip_file_strerror(file_));
   }
 
@@ -123,25 +124,25 @@ class DeflatedMember : public ZipMember {
   mutable std::string bytes_;
 };
 
-/// Deflate makes nothing more than about a thousand times smaller: a larger claim is a lie, found
-/// before memory is asked for.
+/// Approximate limit of deflate's compression ratio. Larger claims are refused before memory is
+/// allocated.
 constexpr std::size_t kMostDeflated = 1100;
 
-/// Members of more than 1 GB may unpack to 512 times their stored bytes: a small file must not fill
-/// the memory.
+/// Members of more than 1 GB may unpack to at most 512 times their stored bytes, so that a small
+/// file cannot fill the memory.
 constexpr std::size_t kUnpackedBytes = std::size_t{1} << 30, kUnpackedShare = 512;
 
-/// A ZIP archive, read by libzip.
+/// ZIP archive, read with libzip.
 class ZipReader {
  public:
   /// Throws IoError.
   explicit ZipReader(const fs::path& path);
 
-  /// Names of the members, in the archive's order.
+  /// Names of the members, in archive order.
   std::vector<std::string> names() const;
-  /// A member's bytes, as large as the archive says; one that is stored as it is is read in parts,
-  /// a compressed one is kept in memory, all of it once more than its first 128 kB are read. They
-  /// outlive the reader. Throws IoError.
+  /// Opens a member. Stored members are read in parts. Compressed ones are decoded into memory,
+  /// completely if more than their first 128 kB are read. The result may outlive the reader. Throws
+  /// IoError.
   std::unique_ptr<const InputBytes> member(const std::string& name) const;
 
  private:
@@ -173,7 +174,7 @@ std::unique_ptr<const InputBytes> ZipReader::member(const std::string& name) con
   if (zip_stat(zip_->archive, name.c_str(), 0, &stat) != 0) {
     zip_->fail(name, zip_strerror(zip_->archive));
   }
-  // Both sizes are claims of the archive's.
+  // The archive states both sizes, and either may be wrong.
   const bool stored = stat.comp_method == ZIP_CM_STORE;
   if (stat.comp_size > fs::file_size(zip_->path) ||
       stat.size / (stored ? 1 : kMostDeflated) > stat.comp_size) {
@@ -193,7 +194,7 @@ std::unique_ptr<const InputBytes> ZipReader::member(const std::string& name) con
   return std::make_unique<const DeflatedMember>(zip_, name, file.release(), stat.size);
 }
 
-/// A ZIP archive, written by libzip.
+/// ZIP archive, written with libzip.
 class ZipWriter {
  public:
   /// Throws OutputError.
@@ -208,7 +209,7 @@ class ZipWriter {
   ZipWriter(const ZipWriter&) = delete;
   ZipWriter& operator=(const ZipWriter&) = delete;
 
-  /// Add a member, not compressed and without the time of writing. Throw OutputError.
+  /// Add a member without compression and without the current time. Throw OutputError.
   void add(const std::string& name, std::string bytes) {
     const std::string& kept = contents_.emplace_back(std::move(bytes));
     add(name, zip_source_buffer(archive_, kept.data(), kept.size(), 0));
@@ -225,7 +226,7 @@ class ZipWriter {
 
  private:
   void add(const std::string& name, zip_source_t* source) {
-    // The first day that an archive can name, so that bytes depend on nothing but the content.
+    // First date of the format, so that the bytes depend only on the content.
     constexpr zip_uint16_t kFirstDate = 1 << 5 | 1;
     if (!source) fail(zip_strerror(archive_));
     const zip_int64_t index = zip_file_add(archive_, name.c_str(), source, ZIP_FL_ENC_UTF_8);
@@ -234,7 +235,7 @@ class ZipWriter {
       fail(zip_strerror(archive_));
     }
     const auto place = static_cast<zip_uint64_t>(index);
-    // A file that anybody reads, whatever the umask.
+    // Readable by everyone, whatever the umask.
     constexpr zip_uint32_t kMode = 0100644U << 16;
     if (zip_set_file_compression(archive_, place, ZIP_CM_STORE, 0) != 0 ||
         zip_file_set_external_attributes(archive_, place, 0, ZIP_OPSYS_UNIX, kMode) != 0 ||
@@ -249,12 +250,12 @@ class ZipWriter {
 
   fs::path path_;
   zip_t* archive_ = nullptr;
-  /// Members' bytes, which the library reads when it closes the archive.
+  /// Bytes of members, which libzip reads when it closes the archive.
   std::deque<std::string> contents_;
 };
 
-// Names of the arrays; what is written has the first of each. An array without a name is NumPy's
-// arr_0.
+// Accepted names of the arrays; the writer uses the first of each. An array without a name is
+// NumPy's arr_0.
 const std::vector<std::string> kPositionNames = {"positions", "vertices", "verts",
                                                  "points",    "frames",   "arr_0"};
 const std::vector<std::string> kFaceNames = {"faces", "triangles", "tris", "polygons"};
@@ -263,15 +264,15 @@ const std::vector<std::string> kRateNames = {"fps", "mocap_framerate", "mocap_fr
                                              "frame_rate", "framerate"};
 const std::vector<std::string> kRestNames = {"rest", "neutral"};
 
-/// Pads the faces of those with fewer corners.
+/// Padding of faces with fewer corners than the widest one.
 constexpr std::int32_t kNoCorner = -1;
 
-/// The arrays of an archive.
+/// Arrays of an archive.
 class NpzFile {
  public:
   explicit NpzFile(const fs::path& path) : path_(path), archive_(path), names_(archive_.names()) {}
 
-  /// The first of `names` that it holds; empty for none.
+  /// First of `names` in the archive; empty if there is none.
   std::string find(const std::vector<std::string>& names) const {
     for (const std::string& name : names) {
       if (std::ranges::find(names_, name + kMember) != names_.end()) return name;
@@ -293,7 +294,7 @@ class NpzFile {
     return npy_values(named(name), content, header);
   }
 
-  /// What it holds, for messages.
+  /// Content of the archive, for messages.
   std::string list() const { return names_.empty() ? "nothing" : listed(names_, 8); }
 
  private:
@@ -412,7 +413,7 @@ std::string npy_bytes(const Connectivity& connectivity) {
   return npy_bytes("<i4", {faces, most}, corners);
 }
 
-/// A file that goes with this.
+/// Temporary file that its destructor removes.
 struct FileBeside {
   fs::path path;
 
@@ -429,7 +430,8 @@ struct FileBeside {
   FileBeside& operator=(const FileBeside&) = delete;
 };
 
-/// The positions go to a file of their own first, since an archive has one member after the other.
+/// Writes the positions to a temporary file first, since the members of an archive are written one
+/// after the other.
 class NpzSink : public FrameSink {
  public:
   NpzSink(const SequenceHeader& header, const fs::path& target, const SequenceWriteOptions& options,

@@ -7,13 +7,13 @@
 namespace mimetra {
 namespace {
 
-/// 0-based index of one that counts from 1, or from the end where it is negative.
+/// 0-based index of a number that counts from 1, or from the end if it is negative.
 int resolved(const TextCursor& cursor, std::string_view digits, std::size_t so_far,
              const char* what) {
   const long long index = cursor.integer(digits, what);
   if (index == 0) cursor.fail(std::string("index 0 for ") + what + ", expected 1 or more");
   const long long from_zero = index > 0 ? index - 1 : static_cast<long long>(so_far) + index;
-  // Messages count from one.
+  // An index of INT_MAX would overflow in messages, which count from 1.
   if (from_zero < 0 || from_zero >= INT_MAX) {
     cursor.fail("index " + std::to_string(index) + " for " + what + ", found " +
                 std::to_string(so_far) + " of them so far");
@@ -52,7 +52,7 @@ class ObjReader {
   }
 
  private:
-  /// Statements that are not about a mesh are passed over; what is not a statement is an error.
+  /// Ignores statements that are not about a mesh. Fails on lines that are not statements.
   void check_keyword(std::string_view keyword) const {
     const char first = keyword.empty() ? 'v' : keyword[0];
     const bool is_name = (first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z');
@@ -107,7 +107,7 @@ class ObjReader {
     if (!names.empty()) content_.libraries.push_back(std::move(names));
   }
 
-  /// Indices may point forward, so that their upper bound is known only at the end.
+  /// Texture indices may point forward, so their upper bound is known only at the end.
   void check_texture() const {
     const auto count = static_cast<int>(content_.texture.coordinates.size());
     std::size_t corner = 0;
@@ -140,7 +140,7 @@ void append_face(std::string& text, const Connectivity& connectivity, int face) 
   text += '\n';
 }
 
-/// As the first Macintosh ended them.
+/// True for line ends of the classic Mac OS.
 bool ends_lines_in_cr(std::string_view text) {
   return text.find('\n') == text.npos && text.find('\r') != text.npos;
 }

@@ -7,8 +7,8 @@
 namespace mimetra {
 namespace {
 
-/// OFF with any of the prefixes that only add columns after a vertex's position: ST (texture), C
-/// (colour), N (normal).
+/// Accepts OFF with any prefix that only adds columns after a position: ST (texture), C (colour), N
+/// (normal).
 void read_keyword(TextCursor& cursor) {
   const std::string_view keyword = cursor.word_anywhere();
   const bool known =
@@ -17,7 +17,8 @@ void read_keyword(TextCursor& cursor) {
   if (!known) cursor.fail_expected("OFF, COFF or NOFF", keyword);
 }
 
-/// A count that the rest of the file can hold: each element takes at least `bytes_each`.
+/// Reads a count, and fails if the rest of the file is too short for it. Each element takes at
+/// least `bytes_each`.
 int read_count(TextCursor& cursor, const char* what, std::size_t bytes_each) {
   const long long count = cursor.integer(cursor.word_anywhere(), what);
   const std::size_t room = cursor.left() / bytes_each + 1;
@@ -33,7 +34,7 @@ void read_face(TextCursor& cursor, MeshContent& content) {
   content.face_lines.push_back(cursor.line());
   for (long long corner = 0; corner < corners; ++corner) {
     const long long vertex = cursor.integer(cursor.word(), "a face's vertex");
-    // What does not fit an int is out of range in any case.
+    // Indices beyond int are out of range in any case.
     content.polygons.corners.push_back(
         static_cast<int>(std::clamp<long long>(vertex, INT_MIN, INT_MAX)));
   }
@@ -49,7 +50,7 @@ MeshContent read_off(const std::string& path, std::string_view bytes, const Cont
   constexpr std::size_t kFaceBytes = 2;    // "0" and the line's end
   const int vertices = read_count(cursor, "the number of vertices", kVertexBytes);
   const int faces = read_count(cursor, "the number of faces", kFaceBytes);
-  cursor.next_line();  // the number of edges, which nobody uses and some leave out
+  cursor.next_line();  // the number of edges, which is not used and may be missing
 
   MeshContent content;
   content.coordinates.reserve(3 * static_cast<std::size_t>(vertices));

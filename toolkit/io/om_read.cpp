@@ -15,8 +15,8 @@
 namespace mimetra {
 namespace {
 
-/// Files of OpenMesh (version 2.2) are a row of chunks: what the rows of one belong to, and what
-/// they are.
+/// An OpenMesh file (version 2.2) is a sequence of chunks. OmOf is the kind of element that a
+/// chunk's rows belong to, and OmWhat is the kind of data.
 enum class OmOf : unsigned { vertices = 0, mesh = 1, faces = 2, edges = 4, halfedges = 6, end = 7 };
 enum class OmWhat : unsigned {
   positions = 0,
@@ -28,14 +28,14 @@ enum class OmWhat : unsigned {
   topology = 7
 };
 
-/// The 16 bits before a chunk. Of custom properties only the first three count.
+/// 16 bits before a chunk. Custom properties use only the first three fields.
 struct OmChunk {
   bool is_named;
   OmOf of;
   OmWhat what;
   bool is_signed, is_float;
   unsigned dimension;   ///< 1 to 8 numbers in a row
-  unsigned size_class;  ///< of a number: 1, 2, 4, 8 bytes of integers, 4, 8, 16 of floats
+  unsigned size_class;  ///< number's size: integers 1, 2, 4, 8 bytes; floats 4, 8, 16
 
   std::size_t integer_bytes() const { return std::size_t{1} << size_class; }
   std::size_t float_bytes() const { return std::size_t{4} << size_class; }
@@ -54,7 +54,7 @@ OmChunk om_chunk(std::uint16_t bits) {
           part(14, 2)};
 }
 
-/// An integer of 1, 2, 4 or 8 bytes. \pre they are there
+/// Integer of 1, 2, 4 or 8 bytes. \pre `at` has that many bytes
 std::int64_t om_integer(const char* at, std::size_t bytes, bool is_signed) {
   const auto as = [at, is_signed](auto number) -> std::int64_t {
     using Unsigned = decltype(number);
@@ -74,7 +74,7 @@ std::int64_t om_integer(const char* at, std::size_t bytes, bool is_signed) {
   }
 }
 
-/// A file, read piece by piece; nothing is read beyond its end.
+/// Reader of a file's bytes, piece by piece, that fails at the end.
 class OmBytes {
  public:
   OmBytes(const std::string& path, std::string_view bytes) : path_(path), bytes_(bytes) {}
@@ -99,7 +99,7 @@ class OmBytes {
     return number_at<Number>(take(sizeof(Number), what).data(), std::endian::little);
   }
 
-  /// A word of up to 255 letters behind its length.
+  /// Word of up to 255 letters, stored after its length.
   std::string word(const std::string& what) {
     return std::string(take(number<std::uint8_t>(what), what));
   }
@@ -109,22 +109,22 @@ class OmBytes {
   std::string_view bytes_;
 };
 
-/// Numbers of an own property, a row for each element, and its type as OpenMesh calls it.
+/// Custom property: a row of numbers for each element, and its type in OpenMesh's words.
 struct OmProperty {
   OmOf of;
   std::string name, type;
   std::string_view values;
 };
 
-/// What of a file is used; the rest is passed over.
+/// Parts of a file that are used.
 struct OmParts {
   std::array<std::uint32_t, 3> counts = {};  ///< vertices, faces, edges
   std::vector<double> coordinates;
   std::vector<double> of_vertices, of_halfedges;  ///< texture coordinates; empty for none
-  /// Next half-edge, vertex it points to, and face or -1, of each half-edge.
+  /// Three numbers for each half-edge: next half-edge, vertex it points to, and face or -1.
   std::vector<std::int64_t> halfedges;
   std::vector<std::int64_t> face_halfedges;
-  Polygons polygons;  ///< of files before version 2, whose faces list their corners
+  Polygons polygons;  ///< from files before version 2, whose faces list their corners
   std::vector<OmProperty> properties;
 };
 
@@ -292,7 +292,7 @@ class OmReader {
     }
   }
 
-  /// Signed, -1 for none.
+  /// Reads integers; -1 marks a missing element.
   void integers(const OmChunk& chunk, std::uint64_t many, const std::string& what,
                 std::vector<std::int64_t>& values) {
     const std::size_t width = chunk.integer_bytes();
@@ -309,7 +309,8 @@ class OmReader {
   OmParts parts_;
 };
 
-/// The corners of faces around which half-edges lead, each a vertex that one points to.
+/// Corners of faces, found by following half-edges. Each corner is the vertex that a half-edge
+/// points to.
 class OmFaces {
  public:
   OmFaces(const std::string& path, const OmParts& parts) : parts_(parts) {
@@ -337,11 +338,11 @@ class OmFaces {
   }
 
   const Polygons& polygons() const { return polygons_; }
-  /// The half-edge that points to each corner.
+  /// Half-edge that points to each corner.
   const std::vector<std::size_t>& corners() const { return corners_; }
 
  private:
-  enum Number { kNext, kTo };  // of the three of a half-edge
+  enum Number { kNext, kTo };  // index among a half-edge's three numbers
 
   std::int64_t of(std::size_t halfedge, Number number) const {
     return parts_.halfedges[3 * halfedge + static_cast<std::size_t>(number)];
@@ -360,7 +361,7 @@ std::vector<Eigen::Vector2d> pairs_of(const std::vector<double>& values) {
   return pairs;
 }
 
-/// A type of properties whose values are numbers, by OpenMesh's name of it.
+/// Numeric type of properties, by its name in OpenMesh.
 struct NumberType {
   std::string_view name;
   std::size_t columns, width;
@@ -385,10 +386,10 @@ constexpr std::array kNumberTypes = {
     number_type<std::int32_t>("Vec2i", 2), number_type<std::int32_t>("Vec3i", 3),
     number_type<std::int32_t>("Vec4i", 4)};
 
-/// Of a byte.
+/// Bits in a byte.
 constexpr std::size_t kBits = 8;
 
-/// Values of bool, the first of a byte the lowest.
+/// Values of bool properties, packed with the first one in the lowest bit.
 Eigen::MatrixXd bits_of(std::string_view stored, std::size_t rows) {
   Eigen::MatrixXd values(rows, 1);
   for (std::size_t i = 0; i < rows; ++i) {
@@ -398,8 +399,8 @@ Eigen::MatrixXd bits_of(std::string_view stored, std::size_t rows) {
   return values;
 }
 
-/// The values (rows x columns), and whether they are integers; none for a type without numbers, or
-/// where they are not as many as elements.
+/// Values (rows x columns), and whether they are integers. None if the type is not numeric, or if
+/// the number of values differs from the number of elements.
 std::optional<std::pair<Eigen::MatrixXd, bool>> values_of(const OmProperty& property,
                                                           std::size_t rows) {
   if (property.type == "bool") {

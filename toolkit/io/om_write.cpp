@@ -51,7 +51,7 @@ void add_property(Mesh& mesh, const std::string& name, const Eigen::MatrixXd& va
   }
 }
 
-/// A property of numbers, or of vectors of two to four.
+/// Adds a property of numbers, or of vectors of two to four.
 template <typename Number, typename Handle, typename Mesh>
 void add_numbers(Mesh& mesh, const std::string& name, const Eigen::MatrixXd& values) {
   check_name(name);
@@ -105,8 +105,8 @@ class SilentLog {
   bool was_enabled_;
 };
 
-/// OpenMesh's writer stores all numbers of the connectivity in as many bytes as four times the
-/// number of edges needs, and cuts off what is left of a vertex's number.
+/// Throws MismatchError for vertices that OpenMesh's writer would truncate. It stores all numbers
+/// of the connectivity in as many bytes as four times the number of edges needs.
 void check_vertices_of_faces(const Connectivity& connectivity, std::size_t edges) {
   const std::size_t largest = 4 * edges;
   const int limit = largest <= 0x100     ? 0x80
@@ -121,7 +121,7 @@ void check_vertices_of_faces(const Connectivity& connectivity, std::size_t edges
   }
 }
 
-/// A file whose vertices are all at the origin.
+/// Bytes of a file with all vertices at the origin.
 template <typename Traits>
 std::string om_bytes(const Connectivity& connectivity, const std::vector<Field>& fields,
                      const Context& context) {
@@ -149,7 +149,7 @@ std::string om_bytes(const Connectivity& connectivity, const std::vector<Field>&
   if (mesh.has_vertex_texcoords2D()) options += OpenMesh::IO::Options::VertexTexCoord;
   if (mesh.has_halfedge_texcoords2D()) options += OpenMesh::IO::Options::FaceTexCoord;
   std::ostringstream bytes;
-  bytes.exceptions(std::ios::badbit | std::ios::failbit);  // std::bad_alloc comes through
+  bytes.exceptions(std::ios::badbit | std::ios::failbit);  // lets std::bad_alloc through
   const SilentLog silent;
   if (!OpenMesh::IO::write_mesh(mesh, bytes, ".om", options)) {
     throw std::runtime_error("OpenMesh could not write the mesh");

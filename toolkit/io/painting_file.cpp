@@ -28,13 +28,13 @@ Pixels pixels_of(const std::string& path, const std::string& bytes) {
   throw IoError(path, "is no image that can be read; expected PNG or JPEG");
 }
 
-/// Exact where it is opaque.
+/// Value over a black background; exact for opaque pixels.
 std::uint16_t over_black(std::uint32_t value, std::uint32_t opacity) {
   constexpr std::uint32_t kOpaque = 65535;
   return static_cast<std::uint16_t>((value * opacity + kOpaque / 2) / kOpaque);
 }
 
-/// The pixel at or before a place, and how far it is to the next one.
+/// Two neighbouring pixels, and the position between them from 0 to 1.
 struct Between {
   Eigen::Index first;
   Eigen::Index second;
@@ -45,7 +45,7 @@ bool is_within(double place) {
   return place >= -Brightness::kRounding && place <= 1 + Brightness::kRounding;
 }
 
-/// A place of the texture as one of the picture, in [0, 1].
+/// Converts a place of the texture to one of the picture, in [0, 1].
 double in_picture(double place) {
   return is_within(place) ? std::clamp(place, 0.0, 1.0) : place - std::floor(place);
 }
@@ -100,7 +100,7 @@ Brightness read_brightness(const std::filesystem::path& path) {
 
 namespace {
 
-/// The mean of what is added, one after the other: bit by bit the same where all are.
+/// Running mean. If all values are equal, the mean equals them bit by bit.
 struct RunningMean {
   double value = 0;
   int count = 0;
@@ -108,7 +108,7 @@ struct RunningMean {
   void add(double more) { value += (more - value) / ++count; }
 };
 
-/// Refuses what could be looked up nowhere.
+/// Throws if the mesh has no texture coordinates, or one that is not finite.
 void check_texture(const std::string& path, const Connectivity& mesh, const std::string& name) {
   const TextureCoordinates& texture = mesh.texture;
   if (texture.coordinates.empty()) {
@@ -130,8 +130,8 @@ void check_texture(const std::string& path, const Connectivity& mesh, const std:
   }
 }
 
-/// What the picture may be looked up wrongly for: other tiles and materials may have pictures of
-/// their own.
+/// Warnings that the picture may be the wrong one for some faces: other tiles or materials may have
+/// their own pictures.
 std::vector<std::string> notes_on_texture(const std::string& path, const Connectivity& mesh) {
   std::vector<std::string> notes;
   const auto beyond =
@@ -221,7 +221,7 @@ Eigen::VectorXd weights_of_table(const std::string& path, int vertices) {
   return weights;
 }
 
-/// What weights that are not in [0, 1] may be instead.
+/// Suggestion about the likely unit of weights that exceed 1.
 std::string other_unit(const Eigen::VectorXd& weights) {
   constexpr double kPercent = 100, kByte = 255;
   if (!weights.allFinite() || weights.minCoeff() < 0) return "";

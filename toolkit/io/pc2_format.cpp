@@ -10,7 +10,8 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-/// Header: this, the version, vertices, first frame, frames from one sample to the next, samples.
+/// First bytes of the header. Version, number of vertices, first frame, frames per sample and
+/// number of samples follow.
 constexpr std::string_view kPc2Magic{"POINTCACHE2\0", 12};
 constexpr std::int32_t kPc2Version = 1;
 constexpr std::size_t kPc2Header = kPc2Magic.size() + 5 * 4;
@@ -49,7 +50,7 @@ OpenSequence open_pc2(const fs::path& path, const SequenceSource& source, const 
   return open_point_cache(std::make_unique<const Pc2File>(path), source, {}, context);
 }
 
-/// Frames per second, on average.
+/// Mean number of frames per second.
 double rate_of(const Eigen::VectorXd& times) {
   const auto last = times.size() - 1;
   if (last < 1) return kDefaultFramesPerSecond;
@@ -60,8 +61,7 @@ PointCacheTarget begin_pc2_file(const SequenceHeader& header, const fs::path& pa
   std::string head(kPc2Magic);
   append_little_endian(head, kPc2Version);
   append_little_endian(head, static_cast<std::int32_t>(header.connectivity->vertices));
-  // Start and step count frames of a scene that plays at the sequence's own rate, as Blender's
-  // exporter counts them.
+  // Start and step count frames of a scene at the sequence's own rate, as in Blender's exporter.
   append_little_endian(head, static_cast<float>(rate_of(header.times) * header.times[0]));
   append_little_endian(head, 1.0F);
   append_little_endian(head, static_cast<std::int32_t>(header.times.size()));
@@ -78,7 +78,7 @@ std::unique_ptr<FrameSink> begin_pc2(const SequenceHeader& header, const fs::pat
                            [&](const fs::path& path) { return begin_pc2_file(header, path); });
 }
 
-/// It counts frames by one step.
+/// PC2 stores a single step for all frames.
 HeldParts held_by_pc2() {
   HeldParts held = parts_held_by(MeshFormat::ply);
   held.uneven_times = false;

@@ -26,7 +26,8 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-/// Where the output really goes: what a link leads to, and for "." and ".." the folder's name.
+/// Resolves links, and replaces "." and ".." by the folder's name. Throws OutputError for a
+/// dangling link.
 fs::path real_target(const fs::path& target) {
   fs::path real = without_trailing_slash(target);
   std::error_code error;
@@ -42,7 +43,7 @@ fs::path real_target(const fs::path& target) {
 
 constexpr const char* kExistsAlready = "exists already; use option 'overwrite' to replace it";
 
-/// Device and inode: what a file or folder is, whatever its path.
+/// Device and inode, which identify a file or folder whatever its path.
 using FileId = std::pair<dev_t, ino_t>;
 
 std::optional<FileId> id_of(const fs::path& path) {
@@ -51,14 +52,14 @@ std::optional<FileId> id_of(const fs::path& path) {
   return FileId(status.st_dev, status.st_ino);
 }
 
-/// Without links, dots and a slash at the end, as far as the file system tells.
+/// Path without links, dots and a trailing slash, as far as the file system can resolve it.
 fs::path place_of(const fs::path& path) {
   std::error_code error;
   const fs::path place = fs::weakly_canonical(fs::absolute(path, error), error);
   return without_trailing_slash(error ? path : place);
 }
 
-/// The folders that a place is in, outermost last, as far as they exist.
+/// Existing folders that contain a place, outermost last.
 std::vector<FileId> folders_around(const fs::path& place) {
   std::vector<FileId> ids;
   for (fs::path folder = place; folder != folder.parent_path();) {
@@ -72,8 +73,8 @@ bool holds(const std::vector<FileId>& ids, const FileId& id) {
   return std::ranges::find(ids, id) != ids.end();
 }
 
-/// What writing `output` would do to one of `inputs`; empty if they all stay. Paths do not tell: a
-/// folder may be mounted twice, and some file systems ignore case.
+/// Damage that writing `output` would do to one of `inputs`; empty if there is none. Compares
+/// identities, since a folder may be mounted twice and some file systems ignore case.
 std::string harm_to(const std::vector<fs::path>& inputs, const fs::path& output) {
   const fs::path place = place_of(output);
   const std::optional<FileId> id = id_of(place);
@@ -103,7 +104,7 @@ std::error_code last_error() {
   return {errno, std::generic_category()};
 }
 
-/// Throws for a folder, now in the place `folder`, that holds what would be lost with it.
+/// Throws OutputError if the folder, now at `folder`, contains files that replacing it would lose.
 void check_replaceable(const fs::path& target, const fs::path& folder) {
   const std::vector<fs::path> others = files_of_others(folder);
   if (others.empty()) return;
@@ -116,8 +117,8 @@ void check_replaceable(const fs::path& target, const fs::path& folder) {
                         "replaced: move what is yours, or choose another name");
 }
 
-/// Renames in one step: `flags` RENAME_EXCHANGE changes the two names, RENAME_NOREPLACE replaces
-/// nothing. Some network file systems know neither.
+/// Renames in one step. RENAME_EXCHANGE swaps the two names, and RENAME_NOREPLACE never replaces.
+/// Some network file systems support neither.
 std::error_code rename_by(const fs::path& from, const fs::path& to, unsigned flags) {
   if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), flags) == 0) return {};
   return last_error();
@@ -132,8 +133,8 @@ std::error_code exchange(const fs::path& temporary, const fs::path& target) {
   std::error_code error = rename_by(temporary, target, RENAME_EXCHANGE);
   if (!is_unknown(error)) return error;
   const fs::path aside = temporary.string() + ".old";
-  // A second name keeps a file while its first one changes hands. Folders cannot have two, nor can
-  // files on some file systems.
+  // A second name keeps the target alive while its first name changes hands. Folders, and files on
+  // some file systems, cannot have two names.
   if (!fs::is_directory(target, error)) fs::create_hard_link(target, aside, error);
   const bool is_linked = fs::exists(aside, error);
   if (!is_linked) fs::rename(target, aside, error);
@@ -141,7 +142,7 @@ std::error_code exchange(const fs::path& temporary, const fs::path& target) {
   fs::rename(temporary, target, error);
   std::error_code ignored;
   fs::rename(aside, error ? target : temporary, ignored);
-  if (is_linked) fs::remove(aside, ignored);  // two names of a file do not replace each other
+  if (is_linked) fs::remove(aside, ignored);  // renaming between two names of one file does nothing
   return error;
 }
 
@@ -155,7 +156,7 @@ std::error_code put(const fs::path& temporary, const fs::path& target) {
   return error;
 }
 
-/// Whatever happens: there is nothing more to be done.
+/// Removes `path` and ignores all errors, since nothing can be done about them.
 void remove_quietly(const fs::path& path) noexcept {
   try {
     std::error_code ignored;
@@ -168,7 +169,7 @@ void remove_quietly(const fs::path& path) noexcept {
   }
 }
 
-/// Temporary names that are in use, and folders that were made for them, the outer first; for
+/// Temporary names in use, and folders made for them, outer folders first. For
 /// remove_pending_outputs().
 struct TemporaryNames {
   std::mutex mutex;
@@ -191,13 +192,13 @@ void forget(const fs::path& temporary) {
   temporary_names().names.erase(temporary);
 }
 
-/// Held while outputs take their places.
+/// Locked while outputs take their places.
 std::mutex& commit_mutex() {
   static auto* const mutex = new std::mutex;  // outlives all outputs
   return *mutex;
 }
 
-/// A file or folder that is open as long as this lives; -1 if it cannot be opened.
+/// File or folder that is open during this object's lifetime; -1 if it cannot be opened.
 class OpenFile {
  public:
   OpenFile(const fs::path& path, int flags) : number_(open(path.c_str(), flags | O_CLOEXEC)) {}
@@ -223,12 +224,12 @@ std::set<fs::path> folders_of(const std::vector<PendingOutput*>& outputs) {
   return folders;
 }
 
-/// Keeps other runs from committing in the same folders, where the file system can do that. A
+/// Keeps other runs from committing in the same folders, if the file system supports locks. A
 /// folder with two paths is locked once.
 class FolderLocks {
  public:
   explicit FolderLocks(const std::set<fs::path>& folders) {
-    std::map<FileId, fs::path> each;  // in one order for all runs
+    std::map<FileId, fs::path> each;  // sorted, so that all runs lock in one order
     for (const fs::path& folder : folders) {
       if (const auto id = id_of(folder)) each.emplace(*id, folder);
     }
@@ -236,7 +237,7 @@ class FolderLocks {
   }
 
  private:
-  /// Whoever has a folder renames a few files and lets it go.
+  /// Waits up to 10 s, since the owner of a lock only renames a few files.
   void lock(const fs::path& folder) {
     constexpr int kAttempts = 1000;
     const OpenFile& opened = opened_.emplace_back(folder, O_RDONLY | O_DIRECTORY);
@@ -250,10 +251,11 @@ class FolderLocks {
   std::vector<OpenFile> opened_;
 };
 
-/// Files of an output up to which each is synced by itself; more go with their file system.
+/// Largest number of files in an output that are synced one by one. Above it, their whole file
+/// system is synced.
 constexpr std::size_t kSyncedFiles = 8;
 
-/// A file, or a folder with the files and folders in it.
+/// The path itself and, for a folder, all files and folders below it.
 std::vector<fs::path> all_within(const fs::path& path) {
   std::vector<fs::path> all = {path};
   std::error_code error;
@@ -264,8 +266,8 @@ std::vector<fs::path> all_within(const fs::path& path) {
   return all;
 }
 
-/// Brings what was written to the disk, so that after a power cut no name leads to an empty file.
-/// File systems that cannot do this are left alone. Throws OutputError if the disk fails.
+/// Syncs contents to the disk, so that no name leads to an empty file after a power cut. Ignores
+/// file systems that cannot sync. Throws OutputError if the disk fails.
 void sync_content(const std::vector<PendingOutput*>& outputs) {
   std::set<dev_t> synced;
   for (const PendingOutput* output : outputs) {
@@ -320,11 +322,11 @@ void PendingOutput::check_target() const {
   if (kind_ == Kind::folder && !fs::is_directory(status)) {
     throw OutputError(target_.string(), "exists and is no folder; choose another name");
   }
-  // Renaming onto a device such as /dev/null would replace the device.
+  // Renaming onto a device such as /dev/null would replace it.
   if (kind_ == Kind::file && !fs::is_regular_file(status)) {
     throw OutputError(target_.string(), "exists and is no ordinary file; choose another name");
   }
-  // What overwriting would not help is said at once.
+  // Report first what the option 'overwrite' would not solve.
   if (kind_ == Kind::folder) check_replaceable(target_, target_);
   if (!overwrite_) throw OutputError(target_.string(), kExistsAlready);
 }
@@ -347,8 +349,7 @@ std::error_code PendingOutput::create_parents() {
   return {};
 }
 
-/// Another run that began at the same time may remove parents that it made and found empty: they
-/// are gone, or were there a moment ago.
+/// Retries, because another run may remove parent folders that it created and found empty.
 void PendingOutput::create_temporary() {
   constexpr int kAttempts = 100;
   std::error_code error;
@@ -377,7 +378,7 @@ void PendingOutput::take_place() {
   stage_ = replaces ? Stage::stands_for_another : Stage::stands_where_nothing_was;
   if (!replaces || kind_ == Kind::file) return;
   try {
-    check_replaceable(target_, temporary_);  // from here on nobody puts anything there
+    check_replaceable(target_, temporary_);  // the old folder can no longer gain files
   } catch (const OutputError&) {
     give_place_back();
     throw;
@@ -414,7 +415,7 @@ void PendingOutput::discard() noexcept {
     forget(temporary_);
   }
   std::error_code ignored;
-  // Removing fails, as it should, where somebody else has put something.
+  // Removal fails, as intended, if someone else has put files there.
   for (auto parent = created_parents_.rbegin(); parent != created_parents_.rend(); ++parent) {
     fs::remove(*parent, ignored);
   }
@@ -424,7 +425,8 @@ PendingOutputs::PendingOutputs(bool overwrite, std::vector<fs::path> inputs,
                                PendingOutputs* together)
     : overwrite_(overwrite), inputs_(std::move(inputs)), together_(together) {}
 
-/// The first one made the parent folders and can remove them only when the others are gone.
+/// Destroys the outputs in reverse order. The first one made the parent folders and can remove them
+/// only when the others are gone.
 PendingOutputs::~PendingOutputs() {
   while (!entries_.empty()) entries_.pop_back();
 }
@@ -447,8 +449,7 @@ void PendingOutputs::add_stale(const fs::path& path, const fs::path& owner) {
   stale_.push_back(path);
 }
 
-/// Of a file that stands where one of this run's would go with the main output; empty where that
-/// may replace it.
+/// Reason to keep an existing companion of the main output; empty if it may be replaced.
 std::string PendingOutputs::reason_to_keep(const fs::path& owner) const {
   return why_to_keep(entries_.empty() ? fs::path() : entries_.front().output->target(), owner,
                      overwrite_);
@@ -465,7 +466,7 @@ void PendingOutputs::commit() {
   const std::vector<PendingOutput*> outputs = in_order();
   sync_content(outputs);
   const FolderLocks locks(folders_of(outputs));
-  check();  // what another run has written meanwhile counts
+  check();  // checks again, since other runs may have written meanwhile
   swap(outputs);
   sync_names(folders_of(outputs));
 }
@@ -482,7 +483,7 @@ void PendingOutputs::hand_over() {
   together_->stale_.insert(together_->stale_.end(), stale_.begin(), stale_.end());
 }
 
-/// Outputs of one run may have a manifest in common.
+/// Outputs of one run may share a manifest, which is kept once.
 void PendingOutputs::drop_repeated() {
   for (auto entry = entries_.begin(); entry != entries_.end();) {
     const PendingOutput& output = *entry->output;
@@ -500,7 +501,7 @@ void PendingOutputs::drop_repeated() {
   }
 }
 
-/// What was added first comes last, but for what tells of it.
+/// Reverse order of add(), with the files that describe outputs last.
 std::vector<PendingOutput*> PendingOutputs::in_order() const {
   std::vector<PendingOutput*> order;
   for (const bool tells : {false, true}) {
@@ -511,7 +512,7 @@ std::vector<PendingOutput*> PendingOutputs::in_order() const {
   return order;
 }
 
-/// Everything takes its place, or nothing does.
+/// Moves all outputs to their places, or none.
 void PendingOutputs::swap(const std::vector<PendingOutput*>& order) {
   const std::scoped_lock lock(commit_mutex());
   try {
@@ -553,23 +554,23 @@ void PendingOutputs::check_inputs_stay() const {
     if (harm.empty()) continue;
     std::error_code unreadable;
     const bool is_file = fs::is_regular_file(output.target(), unreadable);
-    // A rest pose that was read is written again as it was.
+    // Writing back an input with the same content, such as a rest pose, is allowed.
     if (is_file && read_file(output.target()) == read_file(output.path())) continue;
     throw OutputError(output.target().string(), harm);
   }
 }
 
 void remove_pending_outputs() noexcept {
-  commit_mutex().lock();  // for good
+  commit_mutex().lock();  // never unlocked
   const std::scoped_lock lock(temporary_names().mutex);
-  // Other threads may still write into a folder.
+  // Other threads may still be writing into a folder.
   constexpr int kAttempts = 3;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     for (const fs::path& name : temporary_names().names) remove_quietly(name);
   }
   std::error_code ignored;
   std::vector<fs::path>& parents = temporary_names().parents;
-  // Those in which something is stay.
+  // Folders that are not empty stay.
   for (auto parent = parents.rbegin(); parent != parents.rend(); ++parent) {
     fs::remove(*parent, ignored);
   }

@@ -11,41 +11,42 @@
 
 namespace mimetra {
 
-/// A file or folder that appears under its name only when it is whole.
+/// File or folder that appears under its name only when it is complete.
 ///
-/// What is written goes to `path()`, a temporary name in the same folder, which takes the place of
-/// what stands under the name in one step. A process that dies before leaves nothing under the name
-/// asked for, and a destroyed object that was not committed removes what it wrote.
+/// Callers write to `path()`, a temporary name in the same folder. The commit then replaces an
+/// existing target in one step. If the process dies before, the target does not change. An object
+/// that is destroyed before the commit removes what was written.
 class PendingOutput {
  public:
   using Kind = OutputKind;
 
-  /// Creates missing parent folders, and the temporary file or folder itself. Throws OutputError
-  /// where `target` exists and not `overwrite`, nothing can be written there, or a folder to
-  /// overwrite holds anything that its manifest does not list (written_files.h).
+  /// Creates missing parent folders and the temporary file or folder. Throws OutputError if
+  /// `target` exists without `overwrite`, if it cannot be written, or if a folder to overwrite
+  /// contains anything that its manifest (written_files.h) does not list.
   PendingOutput(const std::filesystem::path& target, Kind kind, bool overwrite);
   ~PendingOutput();
   PendingOutput(const PendingOutput&) = delete;
   PendingOutput& operator=(const PendingOutput&) = delete;
 
-  /// A hidden name without the target's extension: a writer that chooses its format by extension
-  /// needs it from elsewhere.
+  /// Hidden name without the target's extension. Writers that choose a format by extension must get
+  /// it separately.
   const std::filesystem::path& path() const { return temporary_; }
   const std::filesystem::path& target() const { return target_; }
   Kind kind() const { return kind_; }
-  /// Throws OutputError where `target` is, or meanwhile became, one that the constructor refuses.
+  /// Throws OutputError if `target` is, or has become, one that the constructor refuses.
   void check_target() const;
 
-  /// Makes it whole: a folder gets a manifest that lists its files. Throws OutputError.
+  /// Completes the output: a folder gets a manifest that lists its files. Throws OutputError.
   void complete();
-  /// Stands under its name from now on, what stood there under the temporary one, whose permissions
-  /// it takes. Throws as check_target(), and then nothing has changed. \pre complete()
+  /// Moves the output to its name; what was there gets the temporary name. The output takes over
+  /// its permissions. Throws as check_target(), and then nothing has changed.
+  /// \pre complete() was called
   void take_place();
-  /// Undoes take_place(), where that was done.
+  /// Undoes take_place(), if it was called.
   void give_place_back() noexcept;
-  /// After take_place(): keeps the place, and removes what stood there.
+  /// Keeps the place after take_place(), and removes what was there before.
   void keep_place() noexcept;
-  /// All of these. Throws as take_place().
+  /// Calls complete(), take_place() and keep_place(). Throws as take_place().
   void commit();
 
  private:
@@ -57,50 +58,52 @@ class PendingOutput {
 
   std::filesystem::path target_;
   std::filesystem::path temporary_;
-  /// Parents that were missing, outermost first.
+  /// Parents that did not exist, outermost first.
   std::vector<std::filesystem::path> created_parents_;
   Kind kind_;
   bool overwrite_;
   Stage stage_ = Stage::pending;
 };
 
-/// Outputs that appear together when all of them are whole, or not at all.
+/// Outputs that appear together when all are complete, or not at all.
 class PendingOutputs {
  public:
-  /// What may stand already under an output's name where nothing may be overwritten.
+  /// Files that may already exist under an output's name without `overwrite`.
   enum class Existing { nothing, same, anything };
 
-  /// `inputs` are files and folders that were read and must stay. With `together`, commit() leaves
-  /// what was added to that one, whose commit() makes it appear.
+  /// `inputs` are files and folders that were read and must not change. With `together`, commit()
+  /// passes the outputs on to that object, whose commit() makes them appear.
   explicit PendingOutputs(bool overwrite, std::vector<std::filesystem::path> inputs = {},
                           PendingOutputs* together = nullptr);
   PendingOutputs(const PendingOutputs&) = delete;
   PendingOutputs& operator=(const PendingOutputs&) = delete;
   ~PendingOutputs();
 
-  /// The temporary path to write to. Throws OutputError as PendingOutput does. `same` is for a file
-  /// that goes with the main output, which was added first: where one stands with another content,
-  /// it is replaced only as a part of a main output that is, and not where it is a part of `owner`
-  /// too; a killed run may have left one of the same content. `anything` is for one that tells of
-  /// an output and comes after it.
+  /// Adds an output and returns its temporary path. Throws OutputError as PendingOutput does.
+  ///
+  /// `same` is for a companion of the main output, which must be added first. An existing companion
+  /// with other content is replaced only together with an existing main output, and only if it does
+  /// not belong to `owner` as well. One with the same content may be left from a killed run.
+  /// `anything` is for a file that describes an output and appears after it.
   const std::filesystem::path& add(const std::filesystem::path& target, PendingOutput::Kind kind,
                                    Existing existing = Existing::nothing,
                                    const std::filesystem::path& owner = {});
 
-  /// A file of an earlier output that would be taken for a part of this one. Throws OutputError
-  /// where `same` would not replace it; commit() removes it.
+  /// Marks a file of an earlier output that could be mistaken for a part of this one; commit()
+  /// removes it. Throws OutputError if `same` would not replace it.
   void add_stale(const std::filesystem::path& path, const std::filesystem::path& owner = {});
 
-  /// What was added first comes last, but for what tells of it: whoever sees it sees all that
-  /// belongs to it. Contents are on the disk before names change, names when this returns. Other
-  /// runs that commit in the same folders wait. Throws OutputError, and then everything is as it
-  /// was.
+  /// Makes all outputs appear, the first added one after the others, and then the files that
+  /// describe outputs. Whoever sees the main output therefore sees its companions. Contents are on
+  /// the disk before names change, and names when this returns. Other runs that commit in the same
+  /// folders wait. Throws OutputError, and then nothing has changed.
   void commit();
 
  private:
   struct Entry {
     std::unique_ptr<PendingOutput> output;
-    std::string unless_same;  ///< why it must hold what stands there; empty where it need not
+    /// Error unless an existing file has the same content; empty for no check.
+    std::string unless_same;
     bool tells_of_another;
   };
 
@@ -120,29 +123,26 @@ class PendingOutputs {
   std::vector<std::filesystem::path> stale_;
 };
 
-/// Removes what outputs of this process have written under temporary names, and empty folders made
-/// for them, once outputs that are taking their places have done so. For a process that is about to
-/// end: none can be committed afterwards.
+/// Removes the temporary files of this process, and empty folders made for them, after running
+/// commits have finished. Call it only before the process ends, since later commits block forever.
 void remove_pending_outputs() noexcept;
 
-/// Throws OutputError if writing `output` would replace one of `inputs`, or become a part of it: it
-/// is that file or folder, by whatever path, holds it, is something that exists in it, or a new
-/// file in it.
+/// Throws OutputError if writing `output` would replace one of `inputs`, contain it, or change a
+/// part of it. Compares files and folders, not paths.
 void check_inputs_stay(const std::filesystem::path& output,
                        const std::vector<std::filesystem::path>& inputs);
 
-/// Why a file that stands where one would go with the output `main` is not to be replaced by
-/// another content: it is a part of `owner` too, or stands without `main`, or nothing may be
-/// overwritten. Empty where it may be.
+/// Reason not to replace a companion of the output `main` by other content: it belongs to `owner`
+/// as well, `main` does not exist, or `overwrite` is false. Empty if it may be replaced.
 std::string why_to_keep(const std::filesystem::path& main, const std::filesystem::path& owner,
                         bool overwrite);
 
-/// What may stand already under the name of a file that a run writes beside its output: a run's
-/// manifest (NAME.run.json, mimetra-run.json) tells of it and may replace anything, which who names
-/// it sees to; others go with it.
+/// Files that may already exist under the name of a file beside an output. A run's manifest
+/// (NAME.run.json, mimetra-run.json) may replace anything, and its caller must choose a suitable
+/// name. Other files are companions.
 PendingOutputs::Existing existing_beside(std::string_view name);
 
-/// Writes `content` to `target` by way of PendingOutputs. Throws OutputError.
+/// Writes `content` to `target` through PendingOutputs. Throws OutputError.
 void write_file(const std::filesystem::path& target, std::string_view content, bool overwrite,
                 PendingOutputs* together = nullptr);
 

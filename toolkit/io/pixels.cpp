@@ -17,12 +17,12 @@ namespace mimetra {
 
 namespace {
 
-/// Weights of Rec. 601 in thousandths. Grey stays what it is, bit by bit.
+/// Luma with the weights of Rec. 601 in thousandths. Grey values stay exact.
 std::uint16_t luma_of(const std::uint16_t* rgb) {
   return static_cast<std::uint16_t>((299U * rgb[0] + 587U * rgb[1] + 114U * rgb[2] + 500U) / 1000U);
 }
 
-/// Above it channels differ by more than compression makes of grey.
+/// Channels of a grey image differ by at most this much after compression.
 constexpr int kColored = 65535 / 16;
 
 [[noreturn]] void fail_truncated(const std::string& path, std::uint64_t bytes) {
@@ -30,8 +30,8 @@ constexpr int kColored = 65535 / 16;
                           " bytes; copy or export it again");
 }
 
-/// Throws IoError for more than kMostPixels, and for more than `most_per_byte` of a file of so many
-/// bytes, which is truncated then.
+/// Throws IoError if there are more than kMostPixels. Also throws it, as for a truncated file, if
+/// there are more than `most_per_byte` pixels for each of the file's `bytes`.
 void check_pixel_count(const std::string& path, std::uint64_t width, std::uint64_t height,
                        std::uint64_t bytes, std::uint64_t most_per_byte) {
   if (width * height > kMostPixels) {
@@ -60,8 +60,8 @@ void Pixels::set(Eigen::Index row, Eigen::Index column, const std::uint16_t* rgb
 
 namespace {
 
-/// libpng jumps out of its functions where a file is damaged. No function that it may jump out of,
-/// or into, has a variable with a destructor; all of those are members.
+/// Decodes PNG. libpng leaves its functions by longjmp if a file is damaged. Functions that a jump
+/// leaves or enters must not have variables with destructors, so these are all members.
 class PngDecoder {
  public:
   explicit PngDecoder(const std::string& bytes) : bytes_(bytes) {
@@ -72,11 +72,12 @@ class PngDecoder {
       throw std::bad_alloc();
     }
     png_set_read_fn(png_, this, read);
-    // Texts and profiles are read over, however long: packed, they may be a thousand times longer.
+    // Skip texts and profiles of any length; unpacked, they may be a thousand times longer.
     constexpr int kAllButPixelsAndOpacity = -1, kUnlimited = 0;
     png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, kAllButPixelsAndOpacity);
     png_set_chunk_malloc_max(png_, kUnlimited);
-    // What libpng would mend or leave out, as a damaged palette or opacity, makes other weights.
+    // Refuse damage that libpng would repair or drop, such as in palette or opacity, since it would
+    // change weights.
     png_set_benign_errors(png_, 0);
     png_set_crc_action(png_, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
   }
@@ -84,7 +85,7 @@ class PngDecoder {
   PngDecoder& operator=(const PngDecoder&) = delete;
   ~PngDecoder() { png_destroy_read_struct(&png_, &info_, nullptr); }
 
-  /// False where it failed: message().
+  /// Returns false on failure; see message().
   bool read_header() {
     if (setjmp(png_jmpbuf(png_))) return false;
     png_read_info(png_, info_);
@@ -101,8 +102,9 @@ class PngDecoder {
            png_get_valid(png_, info_, PNG_INFO_tRNS) != 0;
   }
 
-  /// \pre read_header(), and `pixels` are width() x height(). The same. Row by row: an interlaced
-  /// picture comes as seven smaller ones.
+  /// Returns false on failure. Reads row by row; an interlaced picture arrives as seven smaller
+  /// ones.
+  /// \pre read_header() succeeded, and `pixels` are width() x height()
   bool read_pixels(Pixels& pixels) {
     row_.resize(4 * width());
     if (setjmp(png_jmpbuf(png_))) return false;
@@ -127,7 +129,7 @@ class PngDecoder {
   bool is_truncated() const { return is_truncated_; }
 
  private:
-  /// Which pixels of the picture come next.
+  /// Pixels of the picture that the next pass sets.
   struct Grid {
     Eigen::Index row, column, row_step, column_step;
   };
@@ -188,8 +190,9 @@ Pixels pixels_of_png(const std::string& path, const std::string& bytes) {
 
 namespace {
 
-/// libjpeg calls back where a file is damaged, and must not return from there: it is jumped out of.
-/// No function that is jumped out of, or into, has a variable with a destructor.
+/// Decodes JPEG. If a file is damaged, libjpeg calls an error function that must not return, so it
+/// leaves by longjmp. Functions that a jump leaves or enters must not have variables with
+/// destructors.
 class JpegDecoder {
  public:
   explicit JpegDecoder(const std::string& bytes) : bytes_(bytes) {
@@ -202,7 +205,7 @@ class JpegDecoder {
   JpegDecoder& operator=(const JpegDecoder&) = delete;
   ~JpegDecoder() { jpeg_destroy_decompress(&state_); }
 
-  /// False where it failed: message().
+  /// Returns false on failure; see message().
   bool read_header() {
     if (setjmp(on_error_)) return false;
     jpeg_create_decompress(&state_);
@@ -216,10 +219,11 @@ class JpegDecoder {
   std::uint64_t width() const { return state_.image_width; }
   std::uint64_t height() const { return state_.image_height; }
 
-  /// Arithmetic coding needs less than a bit for a block of pixels.
+  /// True for arithmetic coding, which needs less than a bit for a block of pixels.
   bool is_arithmetic() const { return state_.arith_code; }
 
-  /// \pre read_header(), and `pixels` are width() x height(). The same.
+  /// Returns false on failure.
+  /// \pre read_header() succeeded, and `pixels` are width() x height()
   bool read_pixels(Pixels& pixels) {
     row_.resize(3 * width());
     if (setjmp(on_error_)) return false;
@@ -239,7 +243,7 @@ class JpegDecoder {
 
  private:
   void set(Pixels& pixels, Eigen::Index y, Eigen::Index x) const {
-    // 255 is 65535.
+    // Maps 255 to 65535.
     constexpr std::uint16_t kTo16Bits = 257;
     std::array<std::uint16_t, 4> rgba = {0, 0, 0, 0xffff};
     for (std::size_t c = 0; c < 3; ++c) {
@@ -253,13 +257,13 @@ class JpegDecoder {
     state->err->format_message(state, self.message_.data());
     longjmp(self.on_error_, 1);
   }
-  /// What is missing would be filled with grey.
+  /// Fails on warnings, since libjpeg would fill missing data with grey.
   static void refuse_warnings(j_common_ptr state, int level) {
     if (level < 0) fail(state);
   }
 
-  /// Scans of a few bytes each go over all blocks: encoders make ten, the most careful of them some
-  /// dozens.
+  /// Fails on too many scans, since scans of a few bytes each make libjpeg process all blocks.
+  /// Encoders make about ten scans, and a few dozen at most.
   static void refuse_many_scans(j_common_ptr state) {
     constexpr int kMostScans = 100;
     if (reinterpret_cast<j_decompress_ptr>(state)->input_scan_number <= kMostScans) return;
@@ -287,8 +291,8 @@ class JpegDecoder {
 Pixels pixels_of_jpeg(const std::string& path, const std::string& bytes) {
   JpegDecoder decoder(bytes);
   if (!decoder.read_header()) fail_to_decode(path, decoder);
-  // Huffman's codes need a bit or more for each block of 8 x 8, of which there is one for 16 of
-  // them where colours are sampled more coarsely.
+  // Huffman codes need at least a bit for each 8 x 8 block. With coarsely sampled colours, one such
+  // block covers up to 16 blocks of pixels.
   constexpr std::uint64_t kHuffman = 8 * 64 * 16;
   check_pixel_count(path, decoder.width(), decoder.height(), bytes.size(),
                     decoder.is_arithmetic() ? kMostPixels : kHuffman);

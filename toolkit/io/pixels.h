@@ -7,32 +7,32 @@
 
 #include <Eigen/Core>
 
-/// Pixels of image files, by the libraries of their formats. For readers.
+/// Decoders of image files.
 namespace mimetra {
 
-/// How bright pixels are, and how opaque. Of colours only that is kept: of large textures they
-/// would be a gigabyte.
+/// Brightness and opacity of pixels. Colours are not kept, since large textures would need a
+/// gigabyte.
 class Pixels {
  public:
   /// height x width, from the top left.
   using Plane = Eigen::Matrix<std::uint16_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  /// Without `has_opacity` all pixels are opaque.
+  /// Without `has_opacity`, all pixels are opaque.
   Pixels(std::uint64_t width, std::uint64_t height, bool has_opacity);
 
-  /// Each pixel once, the first of the picture first: its red, green, blue and opacity.
+  /// Sets red, green, blue and opacity of a pixel. Each pixel must be set once, and the picture's
+  /// first pixel first.
   void set(Eigen::Index row, Eigen::Index column, const std::uint16_t* rgba);
 
-  /// Of the colours, the luma.
   const Plane& luma() const { return luma_; }
-  /// Empty where all are opaque.
+  /// Opacity; empty if the file has none.
   const Plane& opacity() const { return opacity_; }
   bool colors_differ() const { return colors_differ_; }
   bool opacities_differ() const { return opacities_differ_; }
-  /// Without a copy, which leaves none behind.
+  /// Move the planes out of this object.
   Plane take_luma() { return std::move(luma_); }
   Plane take_opacity() { return std::move(opacity_); }
-  /// True where some are not grey.
+  /// True if some pixels are not grey.
   bool is_colored() const { return is_colored_; }
 
  private:
@@ -45,11 +45,11 @@ class Pixels {
   bool is_colored_ = false;
 };
 
-/// More pixels come from a damaged header: textures have 8192 x 8192 at most.
+/// Limit that only damaged headers exceed: textures have at most 8192 x 8192 pixels.
 constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 26;
 
-/// Both throw IoError for what is truncated, damaged, or has more than kMostPixels; they ask for
-/// memory only where the file is long enough to fill it.
+/// Decode an image. Throw IoError if it is truncated, damaged, or has more than kMostPixels. Memory
+/// is allocated only if the file is long enough for its pixels.
 Pixels pixels_of_png(const std::string& path, const std::string& bytes);
 Pixels pixels_of_jpeg(const std::string& path, const std::string& bytes);
 

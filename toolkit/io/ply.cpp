@@ -21,9 +21,9 @@ enum class PlyFormat { ascii, little_endian, big_endian };
 
 struct PlyProperty {
   std::string name;
-  PlyType type;  ///< of the value, or of a list's items
+  PlyType type;  ///< type of the value, or of a list's items
   bool is_list = false;
-  PlyType count_type = PlyType::uint8;  ///< of a list's length
+  PlyType count_type = PlyType::uint8;  ///< type of a list's length
 };
 
 struct PlyElement {
@@ -32,11 +32,11 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 };
 
-/// What stands before `end_header`.
+/// Content of the header.
 struct PlyHeader {
   PlyFormat format;
   std::vector<PlyElement> elements;
-  std::size_t bytes;  ///< where the data starts
+  std::size_t bytes;  ///< offset of the data
   int lines;
 };
 
@@ -99,7 +99,7 @@ PlyProperty read_property(TextCursor& cursor, const std::string& element) {
   return property;
 }
 
-/// Throws IoError that names the line.
+/// Parses the header. Throws IoError with the line.
 PlyHeader read_ply_header(const std::string& path, std::string_view bytes) {
   TextCursor cursor(path, without_byte_order_mark(bytes), {});
   if (cursor.word() != "ply")
@@ -150,7 +150,7 @@ std::size_t bytes_of(PlyType type) {
   return 0;
 }
 
-/// The numbers after the header, whatever they are written in.
+/// Reader of the numbers after the header, in any format.
 class PlyBody {
  public:
   PlyBody(const std::string& path, std::string_view bytes, const PlyHeader& header,
@@ -164,7 +164,7 @@ class PlyBody {
 
   std::size_t left() const { return format_ == PlyFormat::ascii ? text_.left() : data_.size(); }
 
-  /// The least number of bytes that a value takes: in text a digit and a blank.
+  /// Smallest number of bytes of a value; in text, a digit and a blank.
   std::size_t least_bytes(PlyType type) const {
     return format_ == PlyFormat::ascii ? 2 : bytes_of(type);
   }
@@ -178,7 +178,8 @@ class PlyBody {
     return result;
   }
 
-  /// What is read next, for messages: "face 12". `kind` must outlive the reading.
+  /// Sets the element that is read next, for messages such as "face 12". `kind` must outlive the
+  /// reading.
   void set_element(std::string_view kind, std::size_t index) {
     kind_ = kind;
     index_ = index;
@@ -197,7 +198,7 @@ class PlyBody {
   [[noreturn]] void fail(const std::string& message) const {
     throw IoError(path_, std::string(kind_) + " " + std::to_string(index_) + ": " + message);
   }
-  /// For what is wrong with an element's declaration.
+  /// Fails because of an element's declaration.
   [[noreturn]] void fail(const PlyElement& element, const std::string& message) const {
     throw IoError(path_, "element " + element.name + ": " + message);
   }
@@ -237,13 +238,14 @@ class PlyBody {
   std::size_t index_ = 0;
 };
 
-/// A header that promises more than the file holds is found before memory is asked for.
+/// Fails, before memory is allocated, if the header promises more elements than the file can
+/// contain.
 void check_room(const PlyBody& body, const PlyElement& element) {
   std::size_t each = 0;
   for (const PlyProperty& property : element.properties) {
     each += body.least_bytes(property.is_list ? property.count_type : property.type);
   }
-  // The last number of a text needs no blank after it.
+  // The last number of a text file needs no blank after it.
   if (each > 0 && element.count > (body.left() + 1) / each) {
     body.fail(element, std::to_string(element.count) + " expected, but only " +
                            std::to_string(body.left()) + " bytes follow");
@@ -254,7 +256,7 @@ std::size_t list_length(PlyBody& body, const PlyProperty& property) {
   const double length = body.value(property.count_type);
   const double room =
       static_cast<double>(body.left() + 1) / static_cast<double>(body.least_bytes(property.type));
-  // The negation refuses a text's "nan" too.
+  // The negation also refuses the text "nan".
   if (!(length >= 0 && length <= room)) {
     body.fail("a list of " + std::to_string(length) + " numbers, but only " +
               std::to_string(body.left()) + " bytes follow");
@@ -275,7 +277,7 @@ void skip_element(PlyBody& body, const PlyElement& element) {
   }
 }
 
-/// What a property of a vertex is: an axis 0 to 2, or a texture coordinate.
+/// Role of a vertex property: an axis 0 to 2, or a texture coordinate.
 constexpr int kFirstTexture = 3;
 constexpr int kNothing = -1;
 
@@ -303,7 +305,7 @@ std::vector<int> roles_of(const PlyBody& body, const PlyElement& element) {
   if (found != std::array<int, 3>{1, 1, 1}) {
     body.fail(element, "expected the properties x, y and z once each");
   }
-  // As Blender, MeshLab and CloudCompare call them.
+  // Names used by Blender, MeshLab and CloudCompare.
   using Names = std::array<std::string_view, 2>;
   for (const Names& names : {Names{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}}) {
     const std::size_t u = index_of(element, names[0]), v = index_of(element, names[1]);
@@ -317,7 +319,7 @@ std::vector<int> roles_of(const PlyBody& body, const PlyElement& element) {
 
 void read_vertices(PlyBody& body, const PlyElement& element, MeshContent& content) {
   std::vector<int> roles = roles_of(body, element);
-  // Faces that stand before the vertices may have brought theirs.
+  // Texture coordinates of faces that come before the vertices take precedence.
   if (!content.texture.corners.empty()) {
     std::ranges::replace_if(
         roles, [](int role) { return role >= kFirstTexture; }, kNothing);
@@ -345,7 +347,7 @@ void read_corners(PlyBody& body, const PlyProperty& property, Polygons& polygons
   const std::size_t corners = list_length(body, property);
   for (std::size_t i = 0; i < corners; ++i) {
     const double vertex = body.value(property.type);
-    // What is not an int is out of range in any case.
+    // Other indices are out of range in any case.
     const bool fits = vertex >= 0 && vertex <= INT_MAX && vertex == std::floor(vertex);
     if (!fits) body.fail("vertex index " + std::to_string(vertex) + ", expected 0 or more");
     polygons.corners.push_back(static_cast<int>(vertex));
@@ -357,17 +359,18 @@ bool lists_vertices(const PlyProperty& property) {
   return property.is_list && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
-/// MeshLab's list of two numbers for each corner.
+/// True for MeshLab's list with two numbers for each corner.
 bool lists_texture(const PlyProperty& property) {
   return property.is_list && property.name == "texcoord";
 }
 
-/// Texture coordinates of corners, where equal ones are one.
+/// Texture coordinates of corners; equal ones are stored once.
 class CornerTexture {
  public:
   explicit CornerTexture(TextureCoordinates& texture) : texture_(texture) { texture_ = {}; }
 
-  /// Of the next face; `numbers` are two for each corner, or there are none that fit.
+  /// Adds the next face. `numbers` are two for each corner; otherwise its corners get no texture
+  /// coordinates.
   void add(const std::vector<double>& numbers, std::size_t corners) {
     const bool fits =
         numbers.size() == 2 * corners &&
@@ -436,7 +439,7 @@ MeshContent read_ply(const std::string& path, std::string_view bytes, const Cont
     body.fail(*strips, "strips of triangles are not read, expected an element face");
   }
   body.expect_end();
-  // Those of vertices.
+  // The coordinates belong to vertices, so each corner uses its vertex's.
   if (!content.texture.coordinates.empty() && content.texture.corners.empty()) {
     content.texture.corners = content.polygons.corners;
   }
@@ -445,16 +448,17 @@ MeshContent read_ply(const std::string& path, std::string_view bytes, const Cont
 
 namespace {
 
-/// How the vertices lie in a binary file: right behind the header, at equal distances.
+/// Layout of the vertices in a binary file: directly after the header, at equal distances.
 struct VertexBlock {
-  PlyType type = PlyType::float32;  ///< of x, y and z
+  PlyType type = PlyType::float32;  ///< type of x, y and z
   std::endian order = std::endian::little;
-  std::size_t stride = 0;              ///< bytes from vertex to vertex
-  std::array<std::size_t, 3> at = {};  ///< of x, y and z in a vertex
-  std::size_t bytes = 0;               ///< of all vertices
+  std::size_t stride = 0;              ///< distance of vertices, in bytes
+  std::array<std::size_t, 3> at = {};  ///< offsets of x, y and z in a vertex
+  std::size_t bytes = 0;               ///< size of all vertices, in bytes
 };
 
-/// None where the first element is none of vertices of fixed size with x, y, z of one real type.
+/// Layout of the vertices. None unless the first element holds vertices of fixed size with x, y, z
+/// of one real type.
 std::optional<VertexBlock> block_of(const PlyHeader& header) {
   if (header.format == PlyFormat::ascii || header.elements.empty()) return std::nullopt;
   const PlyElement& element = header.elements.front();
@@ -491,7 +495,7 @@ bool decode(const VertexBlock& block, const char* vertex, std::span<double> coor
   return all;
 }
 
-/// What stands before and after the vertices.
+/// Layout from the bytes before and after the vertices.
 class PlyLayout : public MeshLayout {
  public:
   PlyLayout(std::string first, std::size_t header_bytes, const VertexBlock& block)

@@ -11,8 +11,8 @@ bool is_textured_by_corner(const Connectivity& connectivity) {
   return !connectivity.texture.coordinates.empty() && !is_textured_by_vertex(connectivity);
 }
 
-/// A byte counts the corners, as every reader expects, unless some polygon has too many: two
-/// numbers stand for each corner with a texture.
+/// True if a byte can count the corners of every polygon, which all readers expect. Corners with
+/// texture coordinates need two numbers each.
 bool bytes_suffice(const Connectivity& connectivity) {
   const Polygons& polygons = connectivity.polygons;
   const int most = is_textured_by_corner(connectivity) ? 255 / 2 : 255;
@@ -33,14 +33,14 @@ std::string header(const Connectivity& connectivity, bool double_precision) {
   }
   text += "element face " + std::to_string(connectivity.polygons.size()) + "\nproperty list " +
           count + " int vertex_indices\n";
-  // As MeshLab has them.
+  // The form that MeshLab uses.
   if (is_textured_by_corner(connectivity)) {
     text += "property list " + count + ' ' + scalar + " texcoord\n";
   }
   return text + "end_header\n";
 }
 
-/// x y z s t of each vertex.
+/// Bytes of x y z s t of each vertex.
 template <typename Scalar>
 std::string textured_bytes(const PositionsView& positions,
                            const std::vector<Eigen::Vector2d>& texture) {
@@ -57,7 +57,8 @@ std::string textured_bytes(const PositionsView& positions,
   return bytes;
 }
 
-/// The list of a face has two numbers for each corner, or none where a corner has no texture.
+/// Appends a face's list of two numbers for each corner, or an empty list if a corner has no
+/// texture coordinates.
 template <typename Count, typename Scalar>
 void append_texture(std::string& bytes, const TextureCoordinates& texture, int first, int last) {
   const auto begin = texture.corners.begin();

@@ -18,10 +18,10 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-/// True if all values are coordinates, told by their exponents.
+/// True if all values are coordinates, judged by their bits.
 bool all_usable(std::span<const double> values) {
   constexpr std::uint64_t kSign = std::uint64_t{1} << 63;
-  // From the limit's exponent on, adding this carries into the sign.
+  // For values from the limit on, adding this carries into the sign bit.
   constexpr std::uint64_t kRest = kSign - std::bit_cast<std::uint64_t>(kCoordinateLimit);
   std::uint64_t carried = 0;
   for (const double value : values) {
@@ -49,7 +49,7 @@ std::string encoded(std::span<const double> values, std::endian order) {
   return bytes;
 }
 
-/// A cache on a mesh.
+/// Frames of a cache on a mesh.
 class CachedFrames : public FrameSource {
  public:
   CachedFrames(std::unique_ptr<const PointCache> cache, SequenceHeader header)
@@ -73,13 +73,13 @@ Positions pose_of(const PointCache& cache, int frame) {
   return pose;
 }
 
-/// A frame of a cache that is read first.
+/// First frame that is read from a cache.
 struct FirstPose {
   int frame = 0;
   Positions positions;
 };
 
-/// What to say of a frame that is no pose of the mesh whose faces it takes; "" where it may be one.
+/// Note on a frame that is unlikely to be a pose of the mesh whose faces it takes; "" if it fits.
 std::string note_on_numbering(const fs::path& path, const FirstPose& first,
                               const fs::path& topology, const TriMesh& mesh) {
   constexpr double kMostOfAPose = 0.2;
@@ -92,8 +92,8 @@ std::string note_on_numbering(const fs::path& path, const FirstPose& first,
          "take faces from the program that wrote the positions";
 }
 
-/// Faces, and where it is not known the rest pose, of files that stand beside a cache, and what is
-/// odd about them in its first pose.
+/// Reads faces, and the rest pose if it is not known, from files beside a cache. Adds a note if
+/// they do not seem to fit the first pose.
 void add_parts_beside(const PointCache& cache, const FirstPose& first, const SequenceSource& source,
                       PointCacheParts& parts, OpenSequence& open, const Context& context) {
   std::vector<fs::path>& files = open.files;
@@ -111,7 +111,7 @@ void add_parts_beside(const PointCache& cache, const FirstPose& first, const Seq
   if (!parts.rest) parts.rest = rest_beside(name_with(path, kRestSuffix), reader, files);
 }
 
-/// Frames keep the time they have in the whole sequence, whichever part is taken.
+/// Times of all frames of the cache. Selected frames keep their time in the whole sequence.
 FrameTimes times_of(const PointCache& cache, const SequenceSource& source,
                     std::optional<Eigen::VectorXd> known, std::vector<fs::path>& files) {
   if (!known && cache.times().size() > 0) known = cache.times();
@@ -219,7 +219,7 @@ void StoredFloats::write(const OutputFile& file, std::size_t first,
 }
 
 void StoredPointCache::check_size() const {
-  // Frames, and coordinates of one, are counted by ints.
+  // The number of frames, and of coordinates in one, must fit int.
   constexpr int kMost = std::numeric_limits<int>::max() / 3;
   if (frames_ < 1 || vertices_ < 1 || frames_ > kMost || vertices_ > kMost) {
     throw IoError(path_.string(), "has " + std::to_string(frames_) + " frames of " +
@@ -260,7 +260,7 @@ OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache, const Seq
   OpenSequence open;
   open.files = {parts.path.empty() ? cache->path() : parts.path};
   const std::vector<int> chosen = selected_frames(source.frames, cache->frames());
-  // Frames that nobody asks for are not read.
+  // Frames outside the selection are not read.
   FirstPose first{chosen.front(), {}};
   if (!parts.faces || !parts.rest) first.positions = pose_of(*cache, first.frame);
   if (!parts.faces) add_parts_beside(*cache, first, source, parts, open, context);

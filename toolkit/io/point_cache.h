@@ -12,10 +12,10 @@
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/mesh/context.h"
 
-/// Files with positions over time and without faces. Internal to the formats that are such files.
+/// Files with positions over time, without faces. Internal to their formats.
 namespace mimetra {
 
-/// One such file, open for reading.
+/// Point cache, open for reading.
 class PointCache {
  public:
   virtual ~PointCache() = default;
@@ -23,19 +23,19 @@ class PointCache {
   const std::filesystem::path& path() const { return path_; }
   int frames() const { return frames_; }
   int vertices() const { return vertices_; }
-  /// Seconds (F); empty where the file holds none.
+  /// Seconds (F); empty if the file stores none.
   const Eigen::VectorXd& times() const { return times_; }
-  /// Where it holds none: the frame of the animation at which it starts, and how many of those lie
-  /// from one of its frames to the next.
+  /// For files without times: the first frame in the animation, and the number of animation frames
+  /// from one cached frame to the next.
   double start() const { return start_; }
   double step() const { return step_; }
 
-  /// Frames from `first` on (x 3N). From several threads. Throws IoError, also for a position that
-  /// is not finite.
+  /// Reads frames from `first` on (x 3N). Safe to call from several threads. Throws IoError, also
+  /// for a position that is not finite.
   void read(int first, FramesView poses) const;
-  /// The same of the vertices from `vertex` on (x 3n).
+  /// Reads the vertices from `vertex` on (x 3n), of frames from `first` on.
   void read_vertices(int first, VertexIndex vertex, FramesView poses) const;
-  /// True where these are found without reading whole frames.
+  /// True if read_vertices() does not have to read whole frames.
   virtual bool reads_vertices() const { return false; }
 
  protected:
@@ -53,19 +53,19 @@ class PointCache {
   virtual void read_some_values(int first, VertexIndex vertex, FramesView poses) const;
 };
 
-/// Floating-point numbers that stand one after the other in a file.
+/// Floating-point numbers stored consecutively in a file.
 struct StoredFloats {
-  std::size_t offset = 0;  ///< of the first, in bytes
-  std::size_t bytes = 4;   ///< of each: 4 or 8
+  std::size_t offset = 0;  ///< offset of the first number, in bytes
+  std::size_t bytes = 4;   ///< bytes of each number: 4 or 8
   std::endian order = std::endian::little;
 
-  /// Those from number `first` on. Throws IoError.
+  /// Reads the numbers from `first` on. Throws IoError.
   void read(const InputBytes& file, std::size_t first, std::span<double> values) const;
-  /// Throws OutputError.
+  /// Writes the numbers from `first` on. Throws OutputError.
   void write(const OutputFile& file, std::size_t first, std::span<const double> values) const;
 };
 
-/// A cache whose positions stand frame after frame, x y z of each vertex.
+/// Cache that stores frame after frame, x y z of each vertex.
 class StoredPointCache : public PointCache {
  public:
   bool reads_vertices() const override { return true; }
@@ -76,7 +76,7 @@ class StoredPointCache : public PointCache {
   explicit StoredPointCache(const std::filesystem::path& path)
       : StoredPointCache(path, std::make_unique<const InputFile>(path)) {}
 
-  /// Throws IoError unless the file ends with the last frame, and for no frames or vertices.
+  /// Throws IoError unless the file ends with the last frame and has at least one frame and vertex.
   void check_size() const;
 
   std::unique_ptr<const InputBytes> file_;
@@ -87,35 +87,34 @@ class StoredPointCache : public PointCache {
   void read_some_values(int first, VertexIndex vertex, FramesView poses) const override;
 };
 
-/// What a file holds besides a cache.
+/// Data that a file stores besides a cache.
 struct PointCacheParts {
-  std::filesystem::path path = {};  ///< empty for the cache's own
+  std::filesystem::path path = {};  ///< empty for the cache's path
   std::shared_ptr<const Connectivity> faces = {};
   std::optional<Eigen::VectorXd> times = {};
   std::optional<Positions> rest = {};
 };
 
-/// The frames that `source` takes of a cache. Where its file holds no faces they are those of
-/// `source.topology` or NAME.topology.ply beside it, and the rest pose is NAME.rest.ply. Throws
-/// IoError, MismatchError, Cancelled.
+/// Opens the frames that `source` selects. If the file has no faces, they come from
+/// `source.topology` or from NAME.topology.ply beside it, and the rest pose from NAME.rest.ply.
+/// Throws IoError, MismatchError, Cancelled.
 OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache, const SequenceSource& source,
                               PointCacheParts parts = {}, const Context& context = {});
 
-/// Where a cache's frames go.
+/// Destination of a cache's frames.
 struct PointCacheTarget {
-  /// Made by PendingOutput: whatever stands before the positions is written by now.
+  /// File at PendingOutput's path, in which everything before the positions is already written.
   std::unique_ptr<OutputFile> file;
   StoredFloats positions;
-  /// True where the format has no other: poses that it would round too much are refused.
+  /// True if the format has single precision only. Poses that it would round too much are refused.
   bool only_single_precision = false;
-  /// Otherwise they go to NAME.times.csv.
+  /// True if the file stores times; otherwise they go to NAME.times.csv.
   bool holds_times = false;
 };
 
-/// Writes a cache, with NAME.topology.ply and, where they are known, NAME.rest.ply and
-/// NAME.times.csv beside it. `begin`
-/// makes the file at a path. Throws OutputError; MismatchError for poses that lie too far from the
-/// origin for the format's precision.
+/// Writes a cache with NAME.topology.ply beside it, and NAME.rest.ply and NAME.times.csv if those
+/// are known. `begin` makes the file at a path. Throws OutputError, and MismatchError for poses too
+/// far from the origin for the format's precision.
 std::unique_ptr<FrameSink> write_point_cache(
     const SequenceHeader& header, const std::filesystem::path& target,
     const SequenceWriteOptions& options, const ExtraFiles& extra,

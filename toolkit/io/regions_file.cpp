@@ -26,7 +26,7 @@ using Lists = std::vector<std::vector<VertexIndex>>;
 constexpr const char* kJsonForm =
     R"({"regions": [{"vertices": [...]}]}, beside them "weights": [...] of a soft border)";
 
-/// A vertex of a mesh of `vertices`. Checked before it is narrowed: 2^32 is not vertex 0.
+/// Checks a vertex index of a mesh of `vertices` before narrowing it, so that 2^32 is not vertex 0.
 VertexIndex vertex_of(const std::string& path, long long number, int vertices) {
   if (number >= 0 && number < vertices) return static_cast<VertexIndex>(number);
   throw MismatchError(path + ": vertex " + std::to_string(number) +
@@ -47,20 +47,21 @@ std::vector<VertexIndex> vertices_of(const std::string& path, const Json& entry,
   return result;
 }
 
-/// JSON has no infinity: the radius of a region that holds unreachable vertices is null.
+/// Radius of a region. JSON has no infinity, so null is the radius of a region with unreachable
+/// vertices.
 double radius_of(const Json& entry) {
   if (!entry.contains("radius")) return 0;
   const Json& radius = entry.at("radius");
   return radius.is_null() ? std::numeric_limits<double>::infinity() : radius.get<double>();
 }
 
-/// The share of the motion energy, which is null where it is not known.
+/// Share of the motion energy. Unknown shares are null in the file and 0 here.
 double share_of(const Json& entry) {
   const Json share = entry.value("energy_share", Json(nullptr));
   return share.is_null() ? 0 : share.get<double>();
 }
 
-/// A number with a fraction or beyond all integers is not cut to one.
+/// Integer member. Throws IoError for fractions and other numbers that are not integers.
 long long integer_of(const std::string& path, const Json& entry, const char* key,
                      long long fallback) {
   const Json value = entry.value(key, Json(fallback));
@@ -81,7 +82,7 @@ void read_details(const std::string& path, const Json& entry, int vertices, Regi
   region.added_for = entry.value("added_for", region.added_for);
 }
 
-/// Regions of another mesh would fit by chance where their vertices are few.
+/// Throws MismatchError for regions of another mesh, whose indices could fit by chance.
 void check_mesh(const std::string& path, const Json& json, int vertices) {
   const long long stated = integer_of(path, json, "mesh_vertices", vertices);
   if (stated == vertices) return;
@@ -157,12 +158,12 @@ Lists read_csv(const std::string& path, std::string text, int vertices) {
 }
 
 bool is_mask(const std::vector<long long>& numbers) {
-  // A list of vertices holds 0 and 1 once each at most.
+  // A list of vertices has 0 and 1 at most once each.
   return numbers.size() > 2 &&
          std::ranges::all_of(numbers, [](long long value) { return value == 0 || value == 1; });
 }
 
-/// One vertex a line, or a mask of N zeros and ones.
+/// Reads one vertex a line, or a mask of N zeros and ones.
 Lists read_list(const std::string& path, const std::string& text, int vertices) {
   TextCursor cursor(path, without_byte_order_mark(text), {.comments = true});
   std::vector<long long> numbers;

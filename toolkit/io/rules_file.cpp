@@ -15,7 +15,7 @@ namespace mimetra {
 
 namespace {
 
-/// Values of a parsed file, each with its place in it for messages.
+/// Reader of parsed rules that knows each value's place, for messages.
 class RulesReader {
  public:
   explicit RulesReader(const std::filesystem::path& path)
@@ -139,7 +139,7 @@ class RulesReader {
     }
   }
 
-  /// Weights are about 1: larger numbers are slips, and would leave nothing of what is solved for.
+  /// Weights are about 1, so larger numbers are mistakes and would dominate the solution.
   static constexpr double kLargest = 1000;
 
   std::string path_;

@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The shorter of the intervals beside one of times that rise; infinite where it stands alone.
+/// Shorter interval between an element of rising times and its neighbours; infinite if there is no
+/// other element.
 template <typename Times, typename Iterator>
 double shorter_interval(const Times& times, Iterator at) {
   double shortest = std::numeric_limits<double>::infinity();
@@ -28,18 +29,19 @@ double shorter_interval(const Times& times, Iterator at) {
   return shortest;
 }
 
-/// Whether only rounding parts two times. Curves of one take may be resampled one by one.
-/// `interval`: the shortest from either to the next key, in seconds.
+/// Whether two times differ only by rounding, as in curves of one take that were resampled
+/// separately. `interval` is the shortest from either time to the next key, in seconds.
 bool is_same_time(double a, double b, double interval) {
   constexpr double kSeconds = 2e-6;
   constexpr double kSinglePrecision = 2.4e-7;  // relative: two units in the last place
-  // Of an interval: in the evening, a unit in the last place is half a frame of 60 a second.
+  // Limit relative to the interval. For a time of day in the evening, a unit in the last place is
+  // half a frame at 60 a second.
   constexpr double kShare = 0.01;
   const double rounding = std::max(kSeconds, kSinglePrecision * std::abs(a));
   return std::abs(a - b) <= std::min(rounding, kShare * interval);
 }
 
-/// Key number `key` of a curve and the part of the way to the next one.
+/// Key of a curve, and the fraction of the way to the next one.
 struct KeyPlace {
   Eigen::Index key;
   double share;
@@ -57,16 +59,15 @@ KeyPlace key_place(const Eigen::VectorXd& times, double time) {
   return {next - 1, (time - times[next - 1]) / (times[next] - times[next - 1])};
 }
 
-/// How many equal steps between two keys show a curve no more coarsely than frames without times
-/// are apart.
+/// Number of equal steps between two keys that shows a curve as finely as the default frame rate.
 double steps_between(double key, double next) {
-  // A third of a frame is no reason for another step: keys stand in single precision.
+  // A third of a frame does not add a step, since keys are in single precision.
   constexpr double kAllowance = 1. / 3;
   return std::max(1., std::ceil((next - key) * kDefaultFramesPerSecond - kAllowance));
 }
 
-/// The keys of a curve, and times between those of splines, which move on a line nowhere. They
-/// rise.
+/// Keys of a curve, ascending. Cubic curves also get times between the keys, since they are not
+/// linear there.
 std::vector<double> shown_times(const std::string& path, const WeightCurve& curve) {
   const Eigen::VectorXd& keys = curve.times;
   std::vector<double> times(keys.begin(), keys.end());
@@ -90,9 +91,9 @@ std::vector<double> shown_times(const std::string& path, const WeightCurve& curv
   return times;
 }
 
-/// A frame before each jump of a curve on steps, until which it stays, unless there is one.
+/// Adds a frame before each jump of a step curve, up to which its value stays, unless there is one.
 void add_times_before_jumps(const WeightCurve& curve, std::set<double>& times) {
-  constexpr double kLongestFrame = 1. / 20;  // of other curves
+  constexpr double kLongestFrame = 1. / 20;  // seconds; another curve's frame this close suffices
   const Eigen::VectorXd& keys = curve.times;
   for (Eigen::Index k = 1; k < keys.size(); ++k) {
     const double steps = steps_between(keys[k - 1], keys[k]);
@@ -103,10 +104,10 @@ void add_times_before_jumps(const WeightCurve& curve, std::set<double>& times) {
   }
 }
 
-/// The times of the frames that show all curves: their keys, those that only rounding parts as the
-/// first curve has them; between the keys of splines, which move on a line nowhere, as often as
-/// frames without times are; and a frame before each jump of steps, unless another curve has one
-/// there. They rise. Throws IoError that begins with `path` where splines last too long.
+/// Ascending times of the frames that show all curves: their keys, and times between the keys of
+/// cubic curves, at the default frame rate. Keys that differ only by rounding take the first
+/// curve's time. Step curves add a frame before each jump, unless another curve has one there.
+/// Throws IoError with `path` if a cubic curve lasts too long.
 Eigen::VectorXd shown_times(const std::string& path,
                             const std::vector<const WeightCurve*>& curves) {
   std::set<double> times;
@@ -147,7 +148,7 @@ Eigen::RowVectorXd WeightCurve::at(double time) const {
   if (between == Between::linear) {
     return (1 - share) * values.row(key) + share * values.row(key + 1);
   }
-  // Hermite's polynomials. [glTF 2.0, appendix C.5]
+  // Hermite polynomials. [glTF 2.0, appendix C.5]
   const double step = times[key + 1] - times[key];
   const double square = share * share, cube = square * share;
   return (2 * cube - 3 * square + 1) * values.row(key) +
@@ -158,19 +159,19 @@ Eigen::RowVectorXd WeightCurve::at(double time) const {
 
 namespace {
 
-/// Targets of one name and one course of weights, wherever they are.
+/// Targets with the same name and the same weights over time, from any part.
 struct JoinedExpression {
   std::string name;
   Eigen::VectorXd weights;                        ///< one for each frame
   std::vector<std::pair<std::size_t, int>> from;  ///< part, target
-  /// The earlier one that it is where weights other than the file's drive both.
+  /// Earlier expression that this one belongs to if weights other than the file's drive both.
   std::optional<std::size_t> joins = {};
 };
 
 /// Gathers targets by name.
 class ExpressionList {
  public:
-  /// \param names of all targets, which none gets that is called otherwise
+  /// `names` are the names of all targets; renamed targets get none of them.
   explicit ExpressionList(std::set<std::string> names) : of_targets_(std::move(names)) {}
 
   void add(std::size_t part, const std::string& part_name, int target, const std::string& name,
@@ -178,7 +179,7 @@ class ExpressionList {
     constexpr double kRounding = 1e-6;
     Namesakes& namesakes = by_name_[name];
     std::set<std::size_t>& moving = namesakes.moving[part];
-    // Two of one name in one mesh are two.
+    // Two targets with one name in one mesh stay two.
     const bool all_move = moving.size() == namesakes.wholes;
     for (const std::size_t index : namesakes.expressions) {
       if (all_move) break;
@@ -212,17 +213,18 @@ class ExpressionList {
  private:
   struct Namesakes {
     std::vector<std::size_t> expressions;
-    std::size_t wholes = 0;  ///< expressions of the model: those that join no other
-    /// Of each part, the wholes that move it already, by themselves or by one that joins them.
+    std::size_t wholes = 0;  ///< expressions of the model, which join no other
+    /// For each part, the wholes that already move it, directly or through an expression that joins
+    /// them.
     std::map<std::size_t, std::set<std::size_t>> moving = {};
-    int next = 2;  ///< the number of the next one that is not the same
+    int next = 2;  ///< number for the next one that gets another name
   };
 
   std::size_t whole_of(std::size_t expression) const {
     return expressions[expression].joins.value_or(expression);
   }
 
-  /// The first of a name that is not among those that move a part.
+  /// First whole of a name that does not move the part yet.
   std::optional<std::size_t> joined_by(const Namesakes& namesakes,
                                        const std::set<std::size_t>& moving) const {
     for (const std::size_t index : namesakes.expressions) {
@@ -235,7 +237,7 @@ class ExpressionList {
   std::set<std::string> of_targets_, names_;
 };
 
-/// Weights of a part's targets in all frames (frames x targets); 0 where nothing is said.
+/// Weights of a part's targets in all frames (frames x targets); 0 if the part has none.
 Eigen::MatrixXd weights_at(const ScenePart& part, const Eigen::VectorXd& times, int frames) {
   const auto targets = static_cast<Eigen::Index>(part.targets.size());
   Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(frames, targets);
@@ -250,7 +252,7 @@ bool is_animated(const ScenePart& part) {
   return part.weights && part.weights->times.size() > 0;
 }
 
-/// Those that are animated first, to which the names belong.
+/// Gathers animated parts first, so that their targets keep their names.
 ExpressionList expressions_of(const std::vector<ScenePart>& parts, const Eigen::VectorXd& times,
                               int frames) {
   std::set<std::string> names;
@@ -271,7 +273,7 @@ ExpressionList expressions_of(const std::vector<ScenePart>& parts, const Eigen::
   return list;
 }
 
-/// Parts whose targets without names are one expression with those of another mesh.
+/// Names of parts whose unnamed targets share an expression with another mesh's.
 std::vector<std::string> united_by_number(const std::vector<ScenePart>& parts,
                                           const std::vector<JoinedExpression>& expressions) {
   using MeshOfPart = std::map<std::size_t, std::size_t>;
@@ -296,7 +298,7 @@ std::vector<std::string> united_by_number(const std::vector<ScenePart>& parts,
   return names;
 }
 
-/// "'fatFace' at 1": targets that the file shows at a weight other than 0 and does not move.
+/// Targets that the file shows at a constant weight other than 0, such as "'fatFace' at 1".
 std::vector<std::string> standing_weights(const std::vector<ScenePart>& parts) {
   std::vector<std::string> standing;
   std::set<std::string> known;
@@ -311,7 +313,7 @@ std::vector<std::string> standing_weights(const std::vector<ScenePart>& parts) {
   return standing;
 }
 
-/// Many parts may share one.
+/// All curves, each once; many parts may share one.
 std::vector<const WeightCurve*> all_curves(const std::vector<ScenePart>& parts) {
   std::vector<const WeightCurve*> curves;
   std::set<const WeightCurve*> known;
@@ -337,7 +339,7 @@ void append_polygons(Polygons& all, const Polygons& part, int first_vertex) {
   }
 }
 
-/// A name as one word of an OBJ file.
+/// Name as a single word of an OBJ file.
 std::string as_word(std::string name) {
   for (char& c : name) {
     if (static_cast<unsigned char>(c) <= ' ') c = '_';
@@ -391,7 +393,8 @@ std::vector<std::string> notes_of(const std::string& path, const std::vector<Sce
   return notes;
 }
 
-/// Nodes may carry what is finite in the file to where it is not.
+/// Throws IoError for positions that are not usable, which a node's transform can produce from
+/// finite ones.
 void check_positions(const std::string& path, const ScenePart& part) {
   const auto check = [&](const Positions& positions, const std::string& of) {
     const Eigen::Index v = first_unusable(positions);
@@ -405,7 +408,7 @@ void check_positions(const std::string& path, const ScenePart& part) {
   }
 }
 
-/// Displacements of the joined parts, a column for each expression.
+/// Displacements of the joined parts, with one column for each expression.
 ShapeBasis joined_basis(std::vector<ScenePart> parts,
                         const std::vector<JoinedExpression>& expressions, Eigen::Index vertices) {
   std::vector<Eigen::Index> first;
@@ -429,7 +432,7 @@ ShapeBasis joined_basis(std::vector<ScenePart> parts,
   return basis;
 }
 
-/// Expressions that join others as parts of those.
+/// Basis of the model, in which expressions that join others are added to them.
 ShapeBasis basis_of_model(const ShapeBasis& take,
                           const std::vector<JoinedExpression>& expressions) {
   std::vector<Eigen::Index> own;
@@ -453,7 +456,7 @@ ShapeBasis basis_of_model(const ShapeBasis& take,
 
 void check_scene_size(const std::string& path, double vertices, double poses,
                       std::size_t file_bytes) {
-  // A few thousand sparse targets of a large head take some hundred times their file.
+  // A few thousand sparse targets of a large head take some hundred times the size of their file.
   constexpr double kLeast = 1 << 30, kMostOfFile = 512;
   constexpr double kMostVertices = 7e8;  // three coordinates each, counted by an int
   const double bytes = vertices * poses * 3 * sizeof(double);

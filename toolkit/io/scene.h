@@ -11,78 +11,82 @@
 #include "toolkit/mesh/context.h"
 #include "toolkit/model/blendshape_model.h"
 
-/// Files of a whole scene, glTF: meshes with morph targets and their weights over
-/// time. Internal to their formats.
+/// Scene files (glTF): meshes with morph targets and their weights over time. Internal to their
+/// formats.
 namespace mimetra {
 
-/// Weights of the targets of one part over time: keys, and what lies between them.
+/// Weights of one part's targets over time: keys and the interpolation between them.
 struct WeightCurve {
   enum class Between { step, linear, cubic };
 
   Between between = Between::linear;
-  Eigen::VectorXd times;   ///< of the keys (K), rising
-  Eigen::MatrixXd values;  ///< K x targets; one row without times for weights that stay
-  /// Slopes before and after each key, K x targets, of cubic curves.
+  Eigen::VectorXd times;   ///< times of the keys (K), ascending
+  Eigen::MatrixXd values;  ///< K x targets; constant weights are one row without times
+  /// Slopes before and after each key of cubic curves, K x targets.
   Eigen::MatrixXd slopes_in, slopes_out;
 
-  /// The weights at a time; those of the nearest key outside of the keys. \pre there is a row
+  /// Weights at a time; outside the keys, the nearest key's. \pre there is a row
   Eigen::RowVectorXd at(double time) const;
-  /// Whether they are the same at all times. \pre there is a row
+  /// Whether the weights are the same at all times. \pre there is a row
   bool is_still() const;
 };
 
-/// Displacements of a part that one weight drives.
+/// Displacements of a part, driven by one weight.
 struct SceneTarget {
   std::string name;
   Positions displacements;  ///< N x 3
-  /// The mesh of the file that has a number for it and no name.
+  /// Mesh of the file in which this target has a number but no name.
   std::optional<std::size_t> unnamed_in = {};
 };
 
-/// One mesh of a scene, where the scene puts it.
+/// Mesh of a scene, transformed to its place.
 struct ScenePart {
   std::string name;
   Positions positions;  ///< N x 3
   Polygons polygons;
   TextureCoordinates texture;
-  /// Names of materials, each from its first polygon on.
+  /// Material names, each applying from a polygon on.
   std::vector<FaceGroup> groups;
   std::vector<SceneTarget> targets;
-  /// A column for each target, or more; null for weights of 0.
+  /// Curve with at least one column for each target; null for weights of 0.
   std::shared_ptr<const WeightCurve> weights = {};
 };
 
-/// A face and what it performs.
+/// Model of a face and its performance.
 struct Scene {
   std::shared_ptr<const BlendshapeModel> model;
-  /// The same model, with an expression of its own for each course of weights.
+  /// Model with a separate expression for each course of weights.
   std::shared_ptr<const BlendshapeModel> performer = {};
-  /// Weights of its expressions (F x D) and their seconds (F); no frames where nothing is driven.
+  /// Weights of the performer's expressions (F x D), and seconds (F). No frames if nothing is
+  /// driven.
   Eigen::MatrixXd weights = {};
   Eigen::VectorXd times = {};
-  /// False where the model's neutral only stands in for a rest pose that nobody knows.
+  /// False if the rest pose is unknown and the model's neutral only stands in for it.
   bool rest_is_known = true;
   std::vector<std::filesystem::path> files = {};
   std::vector<std::string> notes = {};
-  /// What was left out of its movement: of no interest for its shapes.
+  /// Notes on movement that was left out. They do not concern the shapes.
   std::vector<std::string> motion_notes = {};
-  /// What its shapes are without the file's own weights: of no interest for its movement.
+  /// Notes on shapes without the file's own weights. They do not concern the movement.
   std::vector<std::string> model_notes = {};
 };
 
-/// Throws IoError where `vertices` in `poses` poses would take far more memory than a file of
-/// `file_bytes` can mean.
+/// Throws IoError if `vertices` in `poses` poses need far more memory than a file of `file_bytes`
+/// justifies.
 void check_scene_size(const std::string& path, double vertices, double poses,
                       std::size_t file_bytes);
 
-/// One model of all parts, one after the other. Targets of equal names are one expression of the
-/// model, and of the performer where their weights are equal at all times; two of one name in one
-/// part are two. Frames are at the keys of all curves. Throws IoError where there is no part,
-/// a face has a bad index, a key's time does not rise, or all of them would take more memory than a
-/// file of `file_bytes` can mean.
+/// Joins all parts into one model, in order. Targets with equal names become one expression of the
+/// model. They are one expression of the performer only if their weights are equal at all times.
+/// Two targets with one name in one part stay two. Frames are at the keys of all curves; jumps and
+/// cubic curves add frames.
+///
+/// Throws IoError if there is no part, a face has a bad index, a position is not usable, key times
+/// do not rise, a cubic curve lasts too long, or the result would need more memory than a file of
+/// `file_bytes` justifies.
 Scene joined_scene(const std::string& path, std::vector<ScenePart> parts, std::size_t file_bytes);
 
-/// True for the extension of a scene's file, also one that is only refused by what it is.
+/// True for a .glb, .gltf or .vrm path that is not a folder, even if reading refuses its content.
 bool is_scene_file(const std::filesystem::path& path);
 
 /// Reads a scene. Throws IoError, Cancelled.

@@ -47,7 +47,7 @@ OpenSequence open_driven(const ModelSpec& spec, const SequenceSource& source,
   return open;
 }
 
-/// What the name in `text` turned out to be is not a model: nothing there can be driven.
+/// Throws MismatchError if there are weights, since `text` is not a model that they could drive.
 void check_undriven(const std::string& text, const SequenceSource& source) {
   if (!source.weights) return;
   throw MismatchError(text + " is no model that the weights of " + source.weights->string() +
@@ -65,7 +65,7 @@ OpenSequence open_path(const fs::path& path, const SequenceSource& source, const
                                              : "is " + found);
 }
 
-/// Throws IoError for a name in which another sign than those of printf stands for digits.
+/// Throws IoError for a name that marks digits by a sign other than printf's.
 void check_digits(const std::string& text) {
   const fs::path file(text);
   const std::string name = file.filename().string();
@@ -112,7 +112,7 @@ OpenSequence open_sequence(const std::string& text, const SequenceSource& source
       open.notes.push_back(note);
     }
   }
-  // Weights' times were looked at already, and chosen frames may lie far apart.
+  // Times of weights were checked before, and selected frames may be far apart.
   if (open.model_driven || source.frames) return open;
   if (const std::string odd = note_on_steps(open.frames->known_times()); !odd.empty()) {
     open.notes.push_back(text + ": " + odd);
@@ -167,7 +167,7 @@ namespace {
 
 constexpr const char* kCorrespondenceSuffix = ".correspondence.json";
 
-/// What follows the name in a second file of a format.
+/// Suffixes of the further files of a format.
 std::vector<std::string> own_suffixes_of(const fs::path& file) {
   const std::string extension = lower_extension(file);
   if (extension == ".gltf") return {".bin"};
@@ -175,7 +175,7 @@ std::vector<std::string> own_suffixes_of(const fs::path& file) {
   return {};
 }
 
-/// The same in those of the files that a sequence may be written with.
+/// Suffixes of all files that a sequence may be written with.
 std::vector<std::string> suffixes_of(const fs::path& sequence) {
   std::vector<std::string> suffixes = {kCorrespondenceSuffix};
   const std::string extension = lower_extension(sequence);

@@ -40,7 +40,7 @@ std::string note_on_steps(const Eigen::VectorXd& times) {
          "seconds";
 }
 
-// Each in the file of its format.
+// Each is defined in the file of its format.
 SequenceFormat gltf_format(), mdd_format(), npy_format(), npz_format(), pc2_format(),
     splocs_format();
 SequenceFormat mesh_format(MeshFormat format);

@@ -13,22 +13,22 @@
 #include "toolkit/mesh/frame_source.h"
 #include "toolkit/mesh/option.h"
 
-/// What opening a sequence is given and gives, what writing one is given, and the table of formats.
+/// Arguments and results of opening and writing sequences, and the table of formats.
 namespace mimetra {
 
 class PendingOutputs;
 
-/// What a sequence's name does not say.
+/// Settings for opening a sequence that its name does not contain.
 struct SequenceSource {
   /// Blendshape weights that drive a model.
   std::optional<std::filesystem::path> weights = {};
-  /// Mesh file with the faces of a file that holds none.
+  /// Mesh file with the faces for a file that stores none.
   std::optional<std::filesystem::path> topology = {};
-  /// Part `A:B:STEP` of the frames, 0-based, B excluded; each may be left out.
+  /// Selection `A:B:STEP` of the frames, 0-based, without B; each part may be left out.
   std::optional<std::string> frames = {};
-  /// Frames per second where the files say nothing of time.
+  /// Frames per second if the files contain no times.
   std::optional<double> fps = {};
-  /// Factor of the weights; without one, those far beyond 0 to 1 are refused.
+  /// Factor for the weights; without it, weights far beyond 0 to 1 are refused.
   std::optional<double> weight_scale = {};
 
   static constexpr Option kWeights{"weights", &SequenceSource::weights};
@@ -41,43 +41,43 @@ struct SequenceSource {
   static constexpr auto declared() { return std::tuple(kFps, kWeightScale); }
 };
 
-/// Throws std::invalid_argument where `source` has a frame rate for `name`, whose frames have times
-/// of their own (F).
+/// Throws std::invalid_argument if `source` has a frame rate although the frames of `name` have
+/// times (F).
 void check_rate(const std::string& name, const Eigen::VectorXd& times,
                 const SequenceSource& source);
 
-/// Throws IoError that names `name` and the first frame whose time is not finite, or not later than
-/// the one before.
+/// Throws IoError with `name` and the first frame whose time is not finite or not later than the
+/// one before.
 void check_times(const std::string& name, const Eigen::VectorXd& times);
 
-/// What is odd about times (F) whose frames are more than a second apart, by the median, or ten and
-/// more a second apart at whole seconds; "" for nothing.
+/// Note on times (F) that are probably not in seconds: their median step exceeds a second, or ten
+/// or more frames are at whole seconds, at least one apart. "" if there is nothing to note.
 std::string note_on_steps(const Eigen::VectorXd& times);
 
-/// A sequence whose poses are read when they are needed, and what was noticed while opening it.
+/// Sequence whose poses are read when needed, and notes from opening it.
 struct OpenSequence {
   std::shared_ptr<const FrameSource> frames;
-  /// True for a model, with or without weights: its rest pose is its neutral.
+  /// True if the rest pose is a model's neutral, whether or not weights drive the model.
   bool model_driven = false;
-  /// Files it comes from, in order.
+  /// Files that it is read from, in order.
   std::vector<std::filesystem::path> files = {};
-  /// Which weight names were not matched, and the like.
+  /// Notes, for example on weight names that match no expression.
   std::vector<std::string> notes = {};
 };
 
 struct SequenceWriteOptions {
-  /// Of the frames in a folder.
+  /// Format of the frames in a folder.
   MeshFormat format = MeshFormat::ply;
-  /// Double precision in mesh files, which poses far from the origin have in any case; single
-  /// precision in arrays.
+  /// `double_precision` applies to mesh files; poses far from the origin always have it.
+  /// `single_precision` applies to arrays.
   bool double_precision = false;
   bool single_precision = false;
-  /// Written on the mesh where SequenceFormat::fields reads them back.
+  /// Fields to write on the mesh, if SequenceFormat::fields can read them back.
   std::vector<Field> fields = {};
   bool overwrite = false;
-  /// Files and folders that were read, which must stay.
+  /// Files and folders that were read and must not be replaced.
   std::vector<std::filesystem::path> inputs = {};
-  /// Outputs that it appears together with; alone without.
+  /// Outputs that must appear together with this one; null for none.
   PendingOutputs* together = nullptr;
 
   static constexpr Option kFormat{"format", &SequenceWriteOptions::format};
@@ -91,45 +91,45 @@ struct SequenceWriteOptions {
   }
 };
 
-/// Further files (name, content) that appear together with an output: in its folder, or beside its
+/// Further files (name, content) that appear together with an output, in its folder or beside its
 /// file.
 using ExtraFiles = std::vector<std::pair<std::string, std::string>>;
 
 class Animation;
 
-/// A format of files that hold a sequence, declared once: readers, writers, and every list of
-/// formats come from it.
+/// Format of files that store a sequence. Readers, writers, and all lists of formats use this
+/// declaration.
 struct SequenceFormat {
-  /// "PC2 point cache".
+  /// Name, such as "PC2 point cache".
   std::string name;
-  /// In lower case, such as ".pc2".
+  /// Extensions in lower case, such as ".pc2".
   std::vector<std::string> extensions;
-  /// True where faces and rest pose stand in files beside it.
+  /// True if faces and rest pose may be in files beside it.
   bool has_companions = false;
-  /// What positions are written in, and what they may be written in by option.
+  /// Default precision of positions, and the alternative that an option selects.
   enum class Precision { single, single_or_double, double_or_single };
   Precision precision;
   OpenSequence (*open)(const std::filesystem::path&, const SequenceSource&, const Context&);
   std::unique_ptr<FrameSink> (*begin)(const SequenceHeader&, const std::filesystem::path& target,
                                       const SequenceWriteOptions&, const ExtraFiles&,
                                       const Context&);
-  /// What its files and those beside them have a place for: what they have none for is said.
+  /// Parts that its files, and files beside them, can store. Commands report the parts that are
+  /// lost.
   HeldParts holds = {};
-  /// Writes a model and its weights as such; null where only poses are written.
+  /// Writes a model and its weights; null if the format stores poses only.
   std::vector<std::filesystem::path> (*write_animation)(const Animation&,
                                                         const std::filesystem::path& target,
                                                         const SequenceWriteOptions&,
                                                         const ExtraFiles&,
                                                         const Context&) = nullptr;
-  /// The fields on its mesh; null for a format that has no place for any.
+  /// Reads the fields on its mesh; null for a format without fields.
   FieldsRead (*fields)(const std::filesystem::path&, const Connectivity&, const Context&) = nullptr;
 };
 
-/// All formats, in the order in which lists have them.
+/// All formats, in the order of lists for users.
 const std::vector<SequenceFormat>& sequence_formats();
-/// The format of a path by its extension, in any case; null for one that is none of theirs.
+/// Format of a path by its extension, in any case; null if no format has it.
 const SequenceFormat* sequence_format(const std::filesystem::path& path);
-/// The extensions of all formats.
 std::vector<std::string> sequence_extensions();
 
 }  // namespace mimetra

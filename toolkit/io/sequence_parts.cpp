@@ -17,10 +17,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Of NAME.times.csv, in seconds.
+/// Column of NAME.times.csv, in seconds.
 constexpr std::string_view kTimeColumn = "time";
 
-/// A file that only mimetra reads: it holds what the program held.
+/// Adds a mesh file in double precision, since only mimetra reads it.
 void add_pose(PendingOutputs& outputs, const fs::path& sequence, const std::string& suffix,
               const SequenceHeader& header, std::vector<fs::path>& files) {
   const fs::path target = beside(sequence, suffix);
@@ -155,7 +155,7 @@ std::vector<std::string> match_notes(const fs::path& weights, const fs::path& mo
   return notes;
 }
 
-/// One frame with all weights at 0.
+/// Sequence of one frame with all weights at 0.
 std::shared_ptr<const FrameSource> resting(std::shared_ptr<const BlendshapeModel> model,
                                            const SequenceSource& source) {
   selected_frames(source.frames, 1);
@@ -214,7 +214,7 @@ OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path&
     const std::string odd = note_on_steps(times.seconds);
     if (!odd.empty()) open.notes.push_back(driver.string() + ": " + odd);
   }
-  // There may be many frames: no more than one copy of what is not needed again.
+  // There may be many frames, so at most one copy of the weights is kept.
   if (static_cast<int>(chosen.size()) < frames) {
     track.weights = Eigen::MatrixXd(track.weights(chosen, Eigen::all));
   }

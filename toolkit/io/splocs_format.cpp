@@ -16,14 +16,14 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-// What the reference implementation of sparse localized deformation components writes and reads.
+// Datasets of the reference implementation of sparse localized deformation components.
 constexpr auto kVerts = "verts", kTris = "tris";
-// The same as other tools call them.
+// Names of the same data in other tools.
 constexpr auto kVertices = "vertices", kFaces = "faces";
-// What goes with them here, and what the reference leaves alone.
+// Further datasets of mimetra, which the reference implementation ignores.
 constexpr auto kTimesName = "times", kRestName = "rest";
-// Corners of each polygon and their vertices where not all are triangles, and texture coordinates
-// and which of them each corner has.
+// If not all polygons are triangles: the number of corners of each polygon, and their vertices.
+// Also texture coordinates, and the index of each corner's.
 constexpr auto kSizes = "polygon_sizes", kCorners = "polygon_corners";
 constexpr auto kTexture = "uvs", kTextureCorners = "uv_corners";
 
@@ -33,7 +33,7 @@ std::string dataset_shape(const Hdf5Dataset& set) {
   return sizes.empty() ? "one number" : joined(sizes, " x ");
 }
 
-/// Frames, and coordinates of one, are counted by ints.
+/// Converts a size. The number of frames, and of coordinates in one, must fit int.
 int counted(const Hdf5Dataset& set, std::uint64_t size) {
   constexpr std::uint64_t kMost = std::numeric_limits<int>::max() / 3;
   if (size > 0 && size <= kMost) return static_cast<int>(size);
@@ -57,7 +57,7 @@ Hdf5Dataset positions_of(const Hdf5File& file) {
       "frames; copy one take under that name");
 }
 
-/// Frames x vertices x 3.
+/// File with frames x vertices x 3.
 class SplocsFile : public PointCache {
  public:
   SplocsFile(const fs::path& path, Hdf5Dataset verts) : PointCache(path), verts_(std::move(verts)) {
@@ -74,8 +74,8 @@ class SplocsFile : public PointCache {
   Hdf5Dataset verts_;
 };
 
-/// Vertices x 3 x frames, as MATLAB and Dynamic FAUST have them: a frame is all over the file,
-/// which is read as a whole.
+/// File with vertices x 3 x frames, as MATLAB and Dynamic FAUST write it. Each frame is spread over
+/// the file, so the file is read completely.
 class TransposedFile : public PointCache {
  public:
   TransposedFile(const fs::path& path, const Hdf5Dataset& verts)
@@ -107,7 +107,7 @@ void check_shape(const Hdf5Dataset& set, const std::vector<std::uint64_t>& expec
   if (set.shape() != expected) set.fail("is " + dataset_shape(set) + ", expected " + text);
 }
 
-/// A dataset of integers `least` .. `most`.
+/// Reads a dataset of integers from `least` to `most`.
 std::vector<int> integers_of(const Hdf5Dataset& set, int least, int most) {
   std::vector<int> integers;
   for (const double value : set.values()) {
@@ -141,7 +141,7 @@ Connectivity connectivity_of(const Hdf5Dataset& set, int vertices, Polygons poly
   }
 }
 
-/// The polygons that the triangles were cut from.
+/// Polygons that the triangles were made from.
 Polygons polygons_of(const Hdf5File& file, int vertices) {
   const Hdf5Dataset sizes = file.dataset(kSizes), corners = file.dataset(kCorners);
   Polygons polygons;
@@ -254,7 +254,7 @@ Hdf5Image image_of(const SequenceHeader& header, Hdf5Array::Type type) {
   return image;
 }
 
-/// All but the positions is written first; they go to their place in the file.
+/// Writes everything but the positions first, and then the positions to their place in the file.
 class SplocsSink : public FrameSink {
  public:
   SplocsSink(const SequenceHeader& header, const fs::path& target,
@@ -297,7 +297,7 @@ class SplocsSink : public FrameSink {
   OutputFile file_;
   StoredFloats verts_;
   std::size_t columns_;
-  double extent_;  ///< of the rest pose
+  double extent_;  ///< longest side of the rest pose
 };
 
 std::unique_ptr<FrameSink> begin_splocs(const SequenceHeader& header, const fs::path& target,

@@ -9,14 +9,14 @@ namespace mimetra {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 80;
-constexpr std::size_t kPreambleBytes = kHeaderBytes + 4;  // and the number of triangles
+constexpr std::size_t kPreambleBytes = kHeaderBytes + 4;  // with the number of triangles
 constexpr std::size_t kTriangleBytes = 50;                // normal, three corners, attribute
 
 std::size_t triangle_count(std::string_view bytes) {
   return number_at<std::uint32_t>(bytes.data() + kHeaderBytes, std::endian::little);
 }
 
-/// Some binary files start with "solid" too; only their size tells.
+/// Some binary files start with "solid" too, and only their size identifies them.
 bool is_binary(std::string_view bytes) {
   if (!without_byte_order_mark(bytes).starts_with("solid")) return true;
   return bytes.size() >= kPreambleBytes &&
@@ -78,7 +78,7 @@ std::vector<double> read_ascii(const std::string& path, std::string_view bytes,
   std::string_view keyword = cursor.word_anywhere();
   // Several solids may follow each other.
   while (keyword == "solid") {
-    cursor.next_line();  // its name
+    cursor.next_line();  // the solid's name
     keyword = cursor.word_anywhere();
     for (; keyword == "facet"; keyword = cursor.word_anywhere()) {
       report_element(context, corners.size() / 9, cursor.left(), bytes.size());

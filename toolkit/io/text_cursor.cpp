@@ -10,7 +10,7 @@
 namespace mimetra {
 namespace {
 
-/// Long words are cut: a binary file taken for text has lines of megabytes.
+/// `word` in quotes, shortened, since a binary file read as text has lines of megabytes.
 std::string quoted(std::string_view word) {
   constexpr std::size_t kLongest = 40;
   if (word.empty()) return "nothing";
@@ -21,7 +21,7 @@ std::string quoted(std::string_view word) {
   return text + (word.size() > kLongest ? "...'" : "'");
 }
 
-/// std::from_chars knows no leading plus.
+/// std::from_chars does not accept a leading plus.
 std::string_view without_plus(std::string_view word) {
   const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
   return plus ? word.substr(1) : word;
@@ -30,7 +30,7 @@ std::string_view without_plus(std::string_view word) {
 /// True for digits of a number that is too large for a double, false for one that is too small.
 bool is_large(std::string_view digits) {
   const std::size_t exponent_at = std::min(digits.find_first_of("eE"), digits.size());
-  long long magnitude = 0;  // how many digits stand before the point of the number without exponent
+  long long magnitude = 0;  // digits before the point, if written without exponent
   bool is_behind_point = false, is_zero = true;
   for (const char c : digits.substr(0, exponent_at)) {
     if (c == '.') is_behind_point = true;
@@ -47,7 +47,7 @@ bool is_large(std::string_view digits) {
   return magnitude + power > 0;
 }
 
-/// The shortest digits that read back equal, to where `text` has room for them.
+/// Writes the shortest digits that read back equal. \pre `text` has room for kMostDigits
 template <typename Number>
 char* put_shortest(char* text, Number value) {
   return std::to_chars(text, text + kMostDigits, value).ptr;
@@ -157,7 +157,8 @@ double TextCursor::number(std::string_view word, std::string_view what) const {
   if (error == std::errc::invalid_argument || last != digits.data() + digits.size()) {
     fail_expected("a number for " + std::string(what), word);
   }
-  // Too small is 0, too large infinite, which whoever asked for the number refuses.
+  // A number that is too small becomes 0. One that is too large becomes infinite, and callers
+  // refuse it.
   if (error == std::errc::result_out_of_range) {
     const double magnitude = is_large(digits) ? std::numeric_limits<double>::infinity() : 0;
     return digits[0] == '-' ? -magnitude : magnitude;

@@ -19,14 +19,14 @@ const char* skipped_blanks(const char* at, const char* end) {
   return at;
 }
 
-/// Behind the end of the line.
+/// Start of the next line.
 const char* next_line(const char* at, const char* end) {
   const void* found =
       at == end ? nullptr : std::memchr(at, '\n', static_cast<std::size_t>(end - at));
   return found ? static_cast<const char*>(found) + 1 : end;
 }
 
-/// True where '\\' may join a line with the next one, which is left to the whole reader.
+/// True if '\\' may join two lines. Such files are left to the full reader.
 bool may_continue(std::string_view text) {
   for (auto at = text.find('\\'); at != text.npos; at = text.find('\\', at + 1)) {
     if (at + 1 == text.size() || ends_word(text[at + 1])) return true;
@@ -38,8 +38,8 @@ bool may_continue(const char* at, const char* end) {
   return may_continue({at, static_cast<std::size_t>(end - at)});
 }
 
-/// Reads "x y z" and passes over what else is on the line, such as colours. Returns where the next
-/// line starts; null for anything unusual.
+/// Reads "x y z" and skips the rest of the line, such as colours. Returns the start of the next
+/// line; null for anything unusual.
 const char* read_position(const char* at, const char* end, double* position) {
   for (int axis = 0; axis < 3; ++axis) {
     at = skipped_blanks(at, end);
@@ -53,7 +53,7 @@ const char* read_position(const char* at, const char* end, double* position) {
   return may_continue(at, next) ? nullptr : next;
 }
 
-/// What a line of an OBJ file means for its positions and faces.
+/// Effect of an OBJ line on positions and faces.
 enum class Line { vertex, counted, passed_over, unknown };
 
 Line kind_of(const char* at, const char* end) {
@@ -68,7 +68,7 @@ Line kind_of(const char* at, const char* end) {
   return is_letter(*at) ? Line::passed_over : Line::unknown;
 }
 
-/// Lines of f and vt, in runs; between them stand vertices, and what faces do not depend on.
+/// Runs of f and vt lines. Between them are vertices, and lines that do not affect faces.
 class ObjLayout : public MeshLayout {
  public:
   ObjLayout(std::string first, const Context& context) : first_(std::move(first)) {
@@ -119,14 +119,14 @@ class ObjLayout : public MeshLayout {
 
  private:
   struct Run {
-    std::size_t vertices_before;  ///< what negative indices count from
+    std::size_t vertices_before;  ///< negative indices count back from here
     std::string_view text;
   };
 
   static const char* behind(std::string_view run, const char* at, const char* end) {
     const auto left = static_cast<std::size_t>(end - at);
     if (left < run.size() || std::memcmp(at, run.data(), run.size()) != 0) return nullptr;
-    // A run without the end of its last line could go on.
+    // A run whose last line has no line end could continue.
     return run.back() == '\n' || left == run.size() ? at + run.size() : nullptr;
   }
 
@@ -139,13 +139,13 @@ class ObjLayout : public MeshLayout {
   std::vector<Run> runs_;
 };
 
-/// What stands before and after the lines of the vertices.
+/// Layout from the bytes before and after the lines of the vertices.
 class OffLayout : public MeshLayout {
  public:
-  /// `start`: where the lines of the vertices start.
+  /// `start` is the offset of the vertices' lines.
   OffLayout(std::string first, std::size_t start) : first_(std::move(first)), start_(start) {}
 
-  /// Finds where the vertices end. False where some are not on lines of their own.
+  /// Finds the end of the vertices. Returns false if some are not on lines of their own.
   bool learn(std::span<double> coordinates) {
     const char* end = first_.data() + first_.size();
     const char* behind = read_lines(first_.data() + start_, end, coordinates);
@@ -185,7 +185,7 @@ std::unique_ptr<const MeshLayout> obj_layout(std::string first, std::size_t,
 
 std::unique_ptr<const MeshLayout> off_layout(std::string first, std::size_t vertices,
                                              const Context&) {
-  // The keyword and the three counts, which comments may interrupt, and the end of their line.
+  // Skip the keyword and the counts, which comments may interrupt, up to the end of their line.
   const std::string unnamed;
   TextCursor cursor(unnamed, without_byte_order_mark(first), {.comments = true});
   for (int word = 0; word < 3; ++word) cursor.word_anywhere();

@@ -63,20 +63,21 @@ std::string note_on_frame_numbers(const std::string& name) {
 
 namespace {
 
-/// Seconds from one timecode to a later one, frames left out.
+/// Seconds from one timecode to a later one, without frames.
 int seconds_between(const Timecode& code, const Timecode& next) {
   const int seconds = next.seconds - code.seconds;
   return seconds < -kSecondsOfDay / 2 ? seconds + kSecondsOfDay : seconds;
 }
 
-/// Whole frames in a second; none where nothing tells.
+/// Frames per second; none if the timecodes do not determine it.
 std::optional<int> counted_frames(const std::vector<Timecode>& codes) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < codes.size(); ++i) {
     if (seconds_between(codes[i - 1], codes[i]) != 0) continue;
     steps.push_back(codes[i].frames - codes[i - 1].frames);
   }
-  // Where seconds go on, a usual step takes the frames that are left of one and those of the next.
+  // At the change of a second, a usual step is the frames left in the old second and those in the
+  // new one.
   std::vector<double> rates;
   double most = 0;
   for (std::size_t i = 0; i < codes.size(); ++i) {
@@ -87,7 +88,7 @@ std::optional<int> counted_frames(const std::vector<Timecode>& codes) {
   }
   if (rates.empty()) return {};
   const double found = median(rates);
-  // Frames that were lost, and times that are not regular, leave no more than a tenth of doubt.
+  // Lost frames and irregular times leave at most a tenth of doubt.
   const int least = static_cast<int>(std::floor(most)) + 1;
   std::optional<int> nearest;
   for (const int rate : kUsualRates) {

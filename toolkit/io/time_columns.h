@@ -6,62 +6,62 @@
 #include <string_view>
 #include <vector>
 
-/// What columns and keys of times are called, the numbers of frames, and timecodes. For the readers
-/// of weights and landmarks.
+/// Names of columns and keys for times, frame numbers, and timecodes. For the readers of weights
+/// and landmarks.
 namespace mimetra {
 
-/// In how many units a column or key of this name counts a second, in any case and with or without
-/// blanks: 1 for "time", "seconds", "time_s", "time (s)", "time_sec" and "time (sec)", 1000 for
-/// "timestamp_ms", "timestampMs", "time_ms" and "time (ms)". None for others: "t" may be a mouth's
-/// shape, "ms" how long something took, and "timestamp" does not say its unit.
+/// Units per second in a column or key of this name, in any case and with or without blanks. 1 for
+/// "time", "seconds", "time_s", "time (s)", "time_sec" and "time (sec)"; 1000 for "timestamp_ms",
+/// "timestampMs", "time_ms" and "time (ms)". None for other names: "t" may be a mouth shape, "ms" a
+/// duration, and "timestamp" has no unit.
 std::optional<double> units_per_second(std::string name);
 
-/// Other columns of weights' files that are not weights, in lower case: a time without its unit,
-/// HH:MM:SS:FF, and how many weights there are.
+/// Other columns of weight files that are not weights, in lower case: a time without unit,
+/// HH:MM:SS:FF, and the number of weights.
 inline constexpr std::string_view kTimestamp = "timestamp", kTimecode = "timecode",
                                   kBlendshapeCount = "blendshapecount";
 
-/// Whether a column or key of this name holds times, numbers of frames, or one of those.
+/// Whether a column or key of this name holds times, frame numbers, or one of the three above.
 bool is_no_weight(const std::string& name);
 
-/// The number of a frame that a file has as `value`; none for one with a fraction or of more than
-/// 12 digits.
+/// Frame number from a file's `value`; none for fractions and for more than 12 digits.
 std::optional<long long> frame_number(double value);
-/// That in a field of a table, whose point may be a comma; none for other text.
+/// Frame number in a table's field, whose decimal point may be a comma; none for other text.
 std::optional<long long> frame_number_in(std::string_view field);
 
-/// Says that `time`, in seconds, is not later than that of the row before.
+/// Message that `time`, in seconds, is not later than the row before.
 std::string note_on_falling_time(double before, double time);
 
-/// Says that what a column or key of this name holds does not number the frames.
+/// Message that a column or key of this name does not number the frames.
 std::string note_on_frame_numbers(const std::string& name);
 
-/// What cameras count frames by, per second.
+/// Usual frame rates of cameras, per second.
 inline constexpr std::array kUsualRates = {24, 25, 30, 48, 50, 60, 90, 100, 120, 240};
 
 inline constexpr int kSecondsOfDay = 24 * 60 * 60;
 
-/// `HH:MM:SS:FF` or `HH:MM:SS:FF.sss`: a second of the day, and how many frames of it have passed.
+/// Timecode `HH:MM:SS:FF` or `HH:MM:SS:FF.sss`: a second of the day, and the number of frames since
+/// that second.
 struct Timecode {
   int seconds;
   double frames;
 
-  /// None for what is no timecode, and for one that leaves out numbers of frames (`;FF`).
+  /// Parses a timecode. None for other text, and for drop-frame timecodes (`;FF`).
   static std::optional<Timecode> parse(std::string_view text);
 };
 
-/// Seconds since the first of several timecodes, and the frames per second that they count by: 60
-/// where the last frame of a second is 59. Where no second ends among them nothing tells the rate,
-/// and there are none.
+/// Seconds since the first of several timecodes, and their frames per second: 60 if the last frame
+/// of a second is 59. If no second ends among them, the rate is unknown and both are empty.
 struct TimecodeTimes {
   std::optional<double> rate;
   std::vector<double> times;
 };
 
-/// Timecodes may pass midnight once. \pre each is later than the one before: passes()
+/// Times of timecodes, which may pass midnight once. \pre each is later than the one before, as
+/// passes() reports
 TimecodeTimes times_of(const std::vector<Timecode>& codes);
 
-/// True where `next` is later than `code`, or is after midnight.
+/// True if `next` is later than `code`, possibly after midnight.
 bool passes(const Timecode& code, const Timecode& next);
 
 }  // namespace mimetra

@@ -26,13 +26,13 @@ Hdf5Array number(std::int64_t value) {
   return Hdf5Array::of(std::span<const std::int64_t>(&value, 1), {});
 }
 
-/// A link's name must not hold what parts paths.
+/// Name of an HDF5 link, in which '/' would separate paths.
 std::string link_name(std::string name) {
   std::ranges::replace(name, '/', '_');
   return name == "." ? "_" : name;
 }
 
-/// Cells of one of PolyData's four kinds.
+/// Adds the cells of one of PolyData's four kinds.
 void add_cells(Hdf5Image& image, const std::string& kind, const Integers& offsets,
                const Integers& corners) {
   const std::string group = kTop + "/" + kind + "/";
@@ -43,7 +43,7 @@ void add_cells(Hdf5Image& image, const std::string& kind, const Integers& offset
   image.add(group + "Connectivity", array_of(corners));
 }
 
-/// The place of each step's part of a dataset: `rows` further in each, or the same one in all.
+/// Row at which each step's part of a dataset starts: `rows` later for each step, or always 0.
 Hdf5Array places(int steps, std::int64_t rows, std::size_t columns = 1) {
   Integers places(static_cast<std::size_t>(steps) * columns);
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -63,7 +63,7 @@ void add_steps(Hdf5Image& image, const FrameSource& frames) {
   image.add(kSteps + "/PartOffsets", places(steps, 0));
   image.add(kSteps + "/NumberOfParts", array_of(Integers(static_cast<std::size_t>(steps), 1)));
   image.add(kSteps + "/PointOffsets", places(steps, frames.vertices()));
-  // Vertices, lines, polygons and strips.
+  // Columns: vertices, lines, polygons and strips.
   image.add(kSteps + "/CellOffsets", places(steps, 0, 4));
   image.add(kSteps + "/ConnectivityIdOffsets", places(steps, 0, 4));
 }
@@ -100,7 +100,7 @@ void check_names(const FieldSequence& sequence) {
   }
 }
 
-/// Values of all steps, which are written to their place in the file.
+/// Place in the file of the values of all steps.
 struct StepValues {
   StoredFloats stored;
   std::size_t of_step;
@@ -111,12 +111,12 @@ struct StepValues {
   }
 };
 
-/// The file but for positions and displacements, and where these go.
+/// File without positions and displacements, and their places in it.
 struct Layout {
   Hdf5Image image;
   std::size_t number_bytes;
 
-  /// One of `columns` numbers for each vertex in each step.
+  /// Reserves a dataset with `columns` numbers for each vertex in each step.
   void reserve(const std::string& path, const FrameSource& frames, std::uint64_t columns) {
     std::vector<std::uint64_t> shape = {static_cast<std::uint64_t>(frames.frames()) *
                                         static_cast<std::uint64_t>(frames.vertices())};

@@ -25,20 +25,20 @@ namespace mimetra {
 
 namespace {
 
-/// Says that a column of kTimestamp is not used.
+/// Note that a column of kTimestamp is not used.
 std::string note_on_timestamp(const std::string& name) {
   return "'" + name +
          "' is not used, since it does not say its unit; call it 'time' where it is in seconds";
 }
 
-// The keys of files in use: ours, Audio2Face's export for ARKit, and plain ones.
+// Keys of mimetra's own files, Audio2Face's export for ARKit, and plain files.
 const std::vector<std::string> kNames = {"names", "facsNames", "blendShapeNames", "blendshapes"};
 const std::vector<std::string> kMatrix = {"weights", "weightMat"};
 const std::string kTimesKey = "times";
 const std::vector<std::string> kRate = {"fps", "exportFps"};
 const std::vector<std::string> kRows = {"rows", "frames"};
 
-// MediaPipe's Face Landmarker, from JavaScript and Python.
+// Keys of MediaPipe's Face Landmarker, from JavaScript and Python.
 const std::vector<std::string> kCategories = {"faceBlendshapes", "face_blendshapes"};
 const std::vector<std::string> kCategoryNames = {"categoryName", "category_name"};
 
@@ -60,7 +60,7 @@ class WeightJson {
   explicit WeightJson(const std::filesystem::path& path)
       : path_(path.string()), root_(parsed(path)) {}
 
-  /// What `mimetra fit` wrote.
+  /// True for output of `mimetra fit`.
   bool is_fit() const { return member(root_, {"expressions"}) && member(root_, {"frames"}); }
 
   WeightTrack read() {
@@ -85,7 +85,7 @@ class WeightJson {
     throw IoError(path_, place + ": " + message);
   }
 
-  /// Null where an object has none of these.
+  /// Member of an object with the first matching key; null if there is none.
   static const Json* member(const Json& object, const std::vector<std::string>& keys) {
     for (const std::string& key : keys) {
       const auto found = object.is_object() ? object.find(key) : object.end();
@@ -99,12 +99,12 @@ class WeightJson {
     fail(place, "expected a finite number");
   }
 
-  /// NaN for null, which is a weight that is missing.
+  /// Weight in `value`; NaN for null, which is a missing weight.
   double weight(const Json& value, const std::string& place) const {
     return value.is_null() ? kMissingWeight : number(value, place);
   }
 
-  /// Each column holds a number.
+  /// Throws IoError if a column has no number.
   void check_columns(const std::string& place) const {
     for (Eigen::Index column = 0; column < track_.weights.cols(); ++column) {
       if (!track_.weights.col(column).array().isNaN().all()) continue;
@@ -125,14 +125,15 @@ class WeightJson {
         column, [](const Json& value) { return value.is_number() || value.is_null(); });
   }
 
-  /// Of a list for each name, {"time": [0, 0.1], "jawOpen": [0, 1]}, or an object of rows' numbers,
-  /// {"jawOpen": {"0": 0, "1": 1}}; empty where the file holds something else.
+  /// Rows from a list for each name, {"time": [0, 0.1], "jawOpen": [0, 1]}, or from an object of
+  /// numbered rows for each name, {"jawOpen": {"0": 0, "1": 1}}. Empty if the file has another
+  /// form.
   Json rows_of_columns() const {
     Json rows = Json::array();
     if (!root_.is_object()) return rows;
     std::string first;
     for (const auto& [name, column] : root_.items()) {
-      // Times by that name are read for every shape.
+      // read_times() reads times of this name for all forms.
       if ((!column.is_array() && !column.is_object()) || name == kTimesKey) continue;
       if (!holds_numbers(column)) return Json::array();
       if (first.empty()) {
@@ -207,8 +208,8 @@ class WeightJson {
     track_.times[frame] = time;
   }
 
-  /// Objects whose keys are the names of weights, those of the first row; or have them in an object
-  /// "weights".
+  /// Reads rows of objects. Their keys are the weight names, in the row itself or in an object
+  /// "weights". The first row defines the names.
   void read_rows(const Json& rows) {
     if (!rows.is_array() || rows.empty()) fail("rows", "expected a list of rows");
     const auto frames = static_cast<Eigen::Index>(rows.size());
@@ -240,8 +241,8 @@ class WeightJson {
     if (!timed) read_times();
   }
 
-  /// A row's time and in how many units it counts a second, seconds before milliseconds; null
-  /// where it has none.
+  /// A row's time and its units per second, in which seconds precede milliseconds; null if the row
+  /// has no time.
   static std::pair<const Json*, double> time_of(const Json& row) {
     if (!row.is_object()) return {nullptr, 1};
     std::pair<const Json*, double> found = {nullptr, 1};
@@ -252,7 +253,7 @@ class WeightJson {
     return found;
   }
 
-  /// Of the first key that has one.
+  /// Frame number from the first key that has one.
   std::optional<long long> frame_number_of(const Json& row) {
     for (const auto& [key, value] : row.items()) {
       if (!holds_frame_numbers(key)) continue;
@@ -263,7 +264,7 @@ class WeightJson {
     return {};
   }
 
-  /// The numbers of all rows; none where some have none, which is noted.
+  /// Frame numbers of all rows; empty, with a note, if some rows have none.
   std::vector<long long> numbers_of_all() {
     const bool all_have_one = std::ssize(frame_numbers_) == track_.weights.rows();
     if (frame_key_.empty() || all_have_one) return frame_numbers_;
@@ -271,8 +272,8 @@ class WeightJson {
     return {};
   }
 
-  /// MediaPipe's categories of one face, maybe in a list of faces, as an object of names and
-  /// weights, without "_neutral", which is no expression; of no face an empty one.
+  /// MediaPipe's categories of one face, possibly in a list of faces, as an object of names and
+  /// weights. "_neutral" is left out, since it is not an expression. Empty if there is no face.
   Json scores_of(const Json& found, const std::string& place) const {
     const Json* list = &found;
     if (list->is_null()) return Json::object();
@@ -327,7 +328,7 @@ class WeightJson {
   std::map<std::string, Eigen::Index> columns_;
 };
 
-/// In any of the shapes of read_weights().
+/// Reads a JSON file in any of the forms of read_weights().
 WeightTrack read_weights_json(const std::filesystem::path& path) {
   WeightJson json(path);
   return json.is_fit() ? read_fit(path).performance() : json.read();
@@ -374,7 +375,7 @@ class WeightReader {
     if (weight_columns_.empty()) csv_.fail("no column of weights");
   }
 
-  /// Seconds go before milliseconds.
+  /// Seconds precede milliseconds.
   void take_times(std::size_t column, double units) {
     if (time_column_ && units == units_per_second_) csv_.fail("there are two columns of times");
     if (time_column_ && units > units_per_second_) return;
@@ -410,7 +411,7 @@ class WeightReader {
     ++frames_;
   }
 
-  /// A column of other things than whole numbers tells nothing.
+  /// A column with anything but whole numbers is not used.
   void read_frame_number(std::string_view text) {
     if (const auto frame = frame_number_in(text)) {
       frame_numbers_.push_back(*frame);
@@ -436,7 +437,7 @@ class WeightReader {
     timecodes_.push_back(*code);
   }
 
-  /// Of timecodes, which need each other.
+  /// Computes times from all timecodes together.
   void find_times(WeightTrack& result) {
     if (timecodes_.size() < 2) return;
     const TimecodeTimes found = times_of(timecodes_);
@@ -470,7 +471,7 @@ class WeightReader {
     return result;
   }
 
-  /// Each column holds a number.
+  /// Throws IoError if a column has no number.
   void check_columns(const WeightTrack& result) const {
     const bool is_empty = std::ranges::all_of(first_fields_, &std::string::empty);
     if (result.weights.array().isNaN().all() && is_empty) {
@@ -488,8 +489,8 @@ class WeightReader {
 
   std::filesystem::path path_;
   CsvReader csv_;
-  int first_line_ = 0;                     ///< of weights
-  std::vector<std::string> first_fields_;  ///< of the columns of weights
+  int first_line_ = 0;                     ///< of the first row of weights
+  std::vector<std::string> first_fields_;  ///< first row, in the columns of weights
   std::optional<std::size_t> time_column_, timecode_column_, frame_column_;
   double units_per_second_ = 1;
   std::vector<long long> frame_numbers_;
@@ -498,7 +499,7 @@ class WeightReader {
   std::vector<double> times_;
   std::vector<Timecode> timecodes_;
   std::vector<std::string> notes_;
-  std::string frame_note_;  ///< on numbers of frames that are not used
+  std::string frame_note_;  ///< note on frame numbers that are not used
   int frames_ = 0;
 };
 

@@ -6,27 +6,29 @@
 
 namespace mimetra {
 
-/// Reads weights. An ARKit / Live Link Face style CSV has a header of names and one row a frame;
-/// columns `time` (seconds), `frame`, `Timecode` and `BlendShapeCount` are not weights. Without
-/// times, numbers of frames tell how many lie between rows (WeightTrack::step). Timecodes
-/// give times from 0 on, at the rate that their frames are counted by. A byte-order mark and CRLF
-/// are accepted.
+/// Reads weights from .csv or .json.
 ///
-/// NAME.json holds rows of objects ([{"time": 0, "jawOpen": 0.5}], or these as "rows" or "frames"),
-/// which may be MediaPipe's results ("faceBlendshapes" with "timestamp_ms"); or "names" and
-/// "weights" (F x names) with "times" or "fps", by Audio2Face's keys too; or a list for each name,
-/// as pandas writes tables; or is what `mimetra fit` wrote.
+/// A CSV, as from ARKit or Live Link Face, has a header of names and one row a frame. Columns
+/// `time` (seconds), `frame`, `Timecode` and `BlendShapeCount` are not weights. Without times,
+/// frame numbers give the distance of rows (WeightTrack::step). Timecodes give times from 0 on, at
+/// the rate of their frame counts. A byte-order mark and CRLF are accepted. An empty or NaN weight
+/// is missing and is interpolated from its neighbours.
 ///
-/// An empty or NaN weight of a CSV is missing: it lies between its neighbours'.
+/// A JSON file has one of these forms:
+///  - Rows of objects ([{"time": 0, "jawOpen": 0.5}]), also as "rows" or "frames". They may be
+///    MediaPipe's results ("faceBlendshapes" with "timestamp_ms").
+///  - "names" and "weights" (F x names) with "times" or "fps", or Audio2Face's keys for these.
+///  - A list for each name, as pandas writes tables.
+///  - The output of `mimetra fit`.
 ///
-/// Throws IoError that names line and column for ragged rows (decimal commas between commas make
-/// some), tabs between fields, what is not a finite number, times that do not ascend, duplicate
-/// names, JSON in a CSV and the other way round. What is odd about the weights themselves is told
-/// where the expressions are known: note_odd_weights().
+/// Throws IoError with line and column, or with the place in JSON. Errors are ragged rows (also
+/// from decimal commas between commas), tabs between fields, and numbers that are not finite.
+/// Others are times that do not ascend, duplicate names, JSON in a CSV, and CSV in a .json file.
 WeightTrack read_weights(const std::filesystem::path& path);
 
-/// Writes `time` and one column per name, the shortest digits that read back equal. Throws
-/// OutputError; std::invalid_argument where names, times and weights differ in number.
+/// Writes `time`, if the track has times, and one column per name, with the shortest digits that
+/// read back equal. Throws OutputError, and std::invalid_argument if names, times and weights
+/// differ in number.
 void write_weights(const std::filesystem::path& path, const WeightTrack& track, bool overwrite);
 
 }  // namespace mimetra

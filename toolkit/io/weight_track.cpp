@@ -33,7 +33,7 @@ int column_of(const std::vector<std::string>& names, const std::string& expressi
   return shape == expression ? -1 : column_of(names, shape);
 }
 
-/// The columns without the node that their name begins with, where one of them is called so.
+/// Column names without the node at their start, if they stay unique.
 std::vector<std::string> shapes_of_nodes(const std::vector<std::string>& columns) {
   std::map<std::string, int> times;
   for (const std::string& column : columns) ++times[without_node(column)];
@@ -53,7 +53,7 @@ WeightMatch match_weights(const WeightTrack& track, const std::vector<std::strin
   const std::vector<std::string> shapes = shapes_of_nodes(track.names);
   for (const std::string& expression : expressions) {
     int column = column_of(track.names, expression);
-    // A node of the model may be another one than that of a column.
+    // The model and the columns may use different nodes.
     if (column < 0 && without_node(expression) == expression) {
       column = column_of(shapes, expression);
     }
@@ -100,7 +100,7 @@ std::vector<int> rows_without_weights(const Eigen::MatrixXd& weights) {
   return rows;
 }
 
-/// \pre one weight at least is not NaN
+/// \pre at least one weight is not NaN
 void fill_gaps(const Eigen::VectorXd& times, Eigen::Ref<Eigen::VectorXd> weights) {
   std::vector<Eigen::Index> seen;
   for (Eigen::Index f = 0; f < weights.size(); ++f) {
@@ -155,7 +155,7 @@ void scale_weights(const std::string& name, WeightTrack& track,
     return;
   }
   if (track.is_fit) return;
-  constexpr double kLargest = 2;  // they are 0 to 1, and sometimes a little beyond
+  constexpr double kLargest = 2;  // usual weights are 0 to 1, or slightly beyond
   for (const int column : match_weights(track, expressions).column) {
     if (column < 0 || track.weights.rows() == 0) continue;
     Eigen::Index frame = 0;

@@ -11,53 +11,58 @@
 
 namespace mimetra {
 
-/// Blendshape weights over time, as a capture delivers them.
+/// Blendshape weights over time, such as from a capture.
 struct WeightTrack {
   std::vector<std::string> names;  ///< one per column
   Eigen::MatrixXd weights;         ///< F x names
-  Eigen::VectorXd times;           ///< seconds (F); empty where the file has none
-  /// What was noticed while reading, such as times that cannot be told.
+  Eigen::VectorXd times;           ///< seconds (F); empty if the file has none
+  /// Notes from reading, such as on times that cannot be determined.
   std::vector<std::string> notes = {};
-  /// Where it has no times: frames of the animation from one row to the next, 2 for rows of the
+  /// For tracks without times: animation frames from one row to the next, such as 2 for rows of the
   /// frames 1001, 1003, ...
   double step = 1;
-  /// Of a fit, whose coefficients may have any size.
+  /// True for the result of a fit, whose coefficients may have any size.
   bool is_fit = false;
 };
 
-/// Which column of a track drives which expression.
+/// Columns of a track that drive the expressions.
 struct WeightMatch {
-  std::vector<int> column;  ///< for each expression; -1 where none
+  std::vector<int> column;  ///< for each expression; -1 if none
   std::vector<std::string> unmatched_columns;
   std::vector<std::string> undriven_expressions;
 };
 
-/// Names match exactly, then with Left/Right for _L/_R of the expression, then of the column, then
-/// one name drives both halves; without regard to case and underscores at each step only where
-/// nothing matched exactly. What matches nothing is tried without the node that its name begins
-/// with (`blendShape1.jawOpen`), or where it has none, that a column's does, if one column only is
-/// called so.
+/// Matches expressions with columns. Each step compares names exactly, and then without case and
+/// underscores:
+///  - the names as given;
+///  - the expression's name with Left/Right for _L/_R, and then also the column's;
+///  - the expression's name without its side, so that one column drives both halves.
+///
+/// An expression without match is compared without the node at the start of its name
+/// (`blendShape1.jawOpen`). If its name has no node, column names are compared without theirs,
+/// unless that makes them ambiguous.
 WeightMatch match_weights(const WeightTrack& track, const std::vector<std::string>& expressions);
 
-/// Weights in the order of the expressions (F x D), 0 where nothing drives one. Throws
-/// MismatchError where no name is known.
+/// Weights in the order of the expressions (F x D), 0 for expressions without column. Throws
+/// MismatchError if no name matches.
 Eigen::MatrixXd weights_for(const WeightTrack& track, const std::vector<std::string>& expressions);
 
-/// Stands for a weight that is missing.
+/// Value of a missing weight.
 inline constexpr double kMissingWeight = std::numeric_limits<double>::quiet_NaN();
 
-/// Weights that are missing, as in rows where a capture lost the face, lie between their
-/// neighbours in time: by the track's times, else by its rows. The first and the last that there
-/// are stay beyond them. Adds notes on the rows and columns. \pre each column has a number
+/// Fills missing weights, as in rows in which a capture lost the face, by linear interpolation in
+/// time. Tracks without times use row numbers. Before the first and after the last known weight,
+/// the value stays constant. Adds notes on the rows and columns.
+/// \pre each column has a number
 void fill_missing_weights(WeightTrack& track);
 
-/// Multiplies the weights by `scale`. Without one, throws IoError that begins with `name` where a
-/// weight is farther than 2 from 0, as those in percent are, unless they are a fit's. Columns that
-/// drive none of `expressions`, such as a head's pose in degrees, may have any size.
+/// Multiplies the weights by `scale`. Without a scale, throws IoError, which begins with `name`, if
+/// a weight is farther than 2 from 0, such as one in percent. Weights of a fit are not checked.
+/// Columns that drive none of `expressions`, such as a head's pose in degrees, may have any size.
 void scale_weights(const std::string& name, WeightTrack& track,
                    const std::vector<std::string>& expressions, std::optional<double> scale);
 
-/// Adds to the notes, once, what is odd about times that nobody captures at.
+/// Adds a note, once, if the times are implausible for a capture.
 void note_odd_times(WeightTrack& track);
 
 }  // namespace mimetra

@@ -47,13 +47,13 @@ void fail_missing(const std::string& path) {
     names.push_back(entry->path().filename().string());
   }
   std::ranges::sort(names);
-  // Any short name is near to another, and a hidden file is seldom meant.
+  // Short names are similar to any other, and a hidden file is seldom meant.
   constexpr std::size_t kTelling = 3;
   const std::string asked = named.filename().string();
   if (!asked.starts_with('.')) {
     std::erase_if(names, [](const std::string& name) { return name.starts_with('.'); });
   }
-  // Names of one kind of file are alike by their endings.
+  // Compare stems, since files of one kind share their extension.
   const std::string stem = named.stem().string();
   std::erase_if(names, [&stem](const std::string& name) {
     return nearest_word(stem, {fs::path(name).stem().string()}).empty();
@@ -78,7 +78,7 @@ constexpr std::string_view kWeights =
     "file";
 
 struct Kind {
-  std::string_view extensions;  ///< each between blanks
+  std::string_view extensions;  ///< each surrounded by blanks
   std::string_view name;
   std::string_view remedy;
 };
@@ -123,7 +123,7 @@ std::string foreign_file(const fs::path& path) {
   if (const Kind* kind = kind_of(extension)) return std::string(kind->name).append(kind->remedy);
   std::error_code unreadable;
   if (!fs::is_regular_file(path, unreadable)) return {};
-  // Another program's name for it.
+  // Other programs may give glTF files another extension.
   std::array<char, 4> start{};
   std::ifstream(path, std::ios::binary).read(start.data(), start.size());
   if (std::string_view(start.data(), start.size()) != "glTF") return {};

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kFiles = "files";
 
-/// The manifest of a folder, or an empty object.
+/// Manifest of a folder, or an empty object.
 Json manifest_in(const fs::path& folder) {
   std::optional<Json> json = read_json_if_any(folder / kFolderManifest);
   return json && json->is_object() ? *std::move(json) : Json::object();

@@ -5,16 +5,16 @@
 
 namespace mimetra {
 
-/// Name of the manifest in a folder that mimetra wrote.
+/// Name of the manifest in folders that mimetra writes.
 inline constexpr const char* kFolderManifest = "mimetra-run.json";
 
-/// Adds the list of all files below `folder` to its manifest, which is made where there is none.
-/// Throws OutputError.
+/// Adds the list of all files below `folder` to its manifest, creating it if needed. Throws
+/// OutputError.
 void list_written_files(const std::filesystem::path& folder);
 
-/// Files and empty folders below `folder` that its manifest does not list, relative to it, in order
-/// of their names: somebody else's. Without a manifest that lists files these are all. Throws
-/// OutputError where a folder cannot be read.
+/// Files and empty folders below `folder` that its manifest does not list, relative to `folder` and
+/// sorted by name. Without a list in the manifest, these are all files. Throws OutputError if a
+/// folder cannot be read.
 std::vector<std::filesystem::path> files_of_others(const std::filesystem::path& folder);
 
 }  // namespace mimetra

@@ -104,26 +104,26 @@ vtkSmartPointer<vtkTypeInt32Array> index_array(const std::vector<int>& indices) 
   return array;
 }
 
-/// VTK counts vertices and lines before polygons.
+/// Number of vertex and line cells, which VTK numbers before the polygons.
 Eigen::Index cells_before_polygons(vtkPolyData& data) {
   return data.GetNumberOfVerts() + data.GetNumberOfLines();
 }
 
-/// Values of the polygons on all cells.
+/// Extends values on polygons to all cells; other cells get 0.
 Eigen::MatrixXd on_cells(vtkPolyData& data, const Eigen::MatrixXd& on_polygons) {
   Eigen::MatrixXd values = Eigen::MatrixXd::Zero(data.GetNumberOfCells(), on_polygons.cols());
   values.middleRows(cells_before_polygons(data), on_polygons.rows()) = on_polygons;
   return values;
 }
 
-/// Values of each polygon on its triangles.
+/// Copies the values of each polygon to its triangles.
 Eigen::MatrixXd on_triangles(vtkPolyData& data, const Eigen::MatrixXd& on_cells,
                              const Connectivity& connectivity) {
   return on_cells.middleRows(cells_before_polygons(data), connectivity.polygons.size())(
       connectivity.polygon_of_triangle, Eigen::all);
 }
 
-/// The point data or field data of a name, where they are vectors of this mesh.
+/// Array `name` of point data or field data, or null if it does not hold one 3-vector per vertex.
 vtkDataArray* vectors_of(vtkFieldData& carrier, const char* name, const Positions& positions) {
   vtkDataArray* array = carrier.GetArray(name);
   const bool fits = array && array->GetNumberOfComponents() == 3 &&
@@ -131,19 +131,19 @@ vtkDataArray* vectors_of(vtkFieldData& carrier, const char* name, const Position
   return fits ? array : nullptr;
 }
 
-/// `rest` moved as the points were from `then` to `now`; nothing where that is no linear map and
-/// shift.
+/// Moves `rest` by the linear map and shift that took the points from `then` to `now`. Returns
+/// nothing if the points moved otherwise.
 std::optional<Positions> moved_with(const Positions& rest, const Positions& then,
                                     const Positions& now) {
-  // Of the largest coordinate: filters may give points in single precision.
+  // Share of the largest coordinate: filters may output points in single precision.
   constexpr double kRounding = 4 * std::numeric_limits<float>::epsilon();
-  // Of squared sizes: across a mesh that is flatter, rounding would tell the map.
+  // Share of the largest squared extent. In flatter directions, rounding would determine the map.
   constexpr double kFlat = 1e-8;
   if (now == then) return rest;
   const Eigen::RowVector3d center = then.colwise().mean();
   const Positions around = then.rowwise() - center, moves = now - then;
   const Eigen::RowVector3d shift = moves.colwise().mean();
-  // Products of long matrices are lazy: their sums do not depend on sizes of caches.
+  // Lazy products sum in an order that does not depend on cache sizes.
   const Eigen::Matrix3d squares = around.transpose().lazyProduct(around);
   const Eigen::Matrix3d moved = around.transpose().lazyProduct((moves.rowwise() - shift).eval());
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(squares);
@@ -158,7 +158,7 @@ std::optional<Positions> moved_with(const Positions& rest, const Positions& then
   return (rest + (rest.rowwise() - center).lazyProduct(map)).rowwise() + shift;
 }
 
-/// Keeps where the points of a rest pose are; the array shares their memory.
+/// Stores the points as kPlaced if the mesh carries a rest pose. The array shares their memory.
 void keep_places(vtkPolyData& data) {
   if (!data.GetPoints() || !data.GetPointData()->HasArray(kRestPose)) return;
   vtkDataArray* points = data.GetPoints()->GetData();
@@ -194,7 +194,7 @@ Connectivity connectivity_of(vtkPolyData& data, const std::string& name) {
   if (data.GetNumberOfStrips() > 0) {
     throw IoError(name, "has triangle strips; apply ParaView's Triangulate first");
   }
-  // Offsets may lie anywhere.
+  // The offsets of a file may point anywhere.
   if (!data.GetPolys()->IsValid()) throw IoError(name, "the offsets of its faces do not fit");
   Polygons polygons;
   vtkNew<vtkIdList> corners;
@@ -221,7 +221,7 @@ std::optional<CarriedRest> rest_of(vtkPolyData& data, const Positions& positions
     return CarriedRest{rest_in(*beside, name), ""};
   }
   Positions rest = rest_in(*on_points, name);
-  // Earlier versions did not keep the places.
+  // Earlier versions did not store kPlaced.
   vtkDataArray* places = vectors_of(*data.GetPointData(), kPlaced, positions);
   if (!places) return CarriedRest{std::move(rest), ""};
   if (auto moved = moved_with(rest, values_of(*places), positions)) return CarriedRest{*moved, ""};
@@ -285,7 +285,7 @@ void add_field(vtkPolyData& data, const Field& field, const Connectivity& connec
   }
   vtkPointData* on_points = data.GetPointData();
   on_points->AddArray(array_of(field.name, field.values, field.integer));
-  // ParaView colours what it shows first by the active scalars.
+  // ParaView first colours a mesh by its active scalars.
   if (!on_points->GetScalars() && field.values.cols() == 1) {
     on_points->SetActiveScalars(field.name.c_str());
   }
@@ -308,16 +308,16 @@ void set_rest(vtkPolyData& data, const std::optional<Positions>& rest) {
 
 namespace {
 
-/// Above it displacements drown in the rounding, as a share of the largest one.
+/// Above this share of the largest displacement, rounding hides the displacements.
 constexpr double kMostRounding = 0.25;
-/// From the first frame that is looked at to the last.
+/// Checked frames are about frames / kSteps apart.
 constexpr int kSteps = 8;
 
 double largest_of(const Eigen::MatrixXd& values) {
   return values.array().isFinite().select(values.array().abs(), 0).maxCoeff();
 }
 
-/// How far sums of `values` may be off where one of the arrays is of single precision.
+/// Bound on the rounding error of differences of `values`, for the least precise of `arrays`.
 double rounding_of(const Eigen::MatrixXd& values, std::initializer_list<vtkDataArray*> arrays) {
   const bool is_single = std::ranges::any_of(
       arrays, [](vtkDataArray* array) { return array->GetDataType() == VTK_FLOAT; });
@@ -326,7 +326,8 @@ double rounding_of(const Eigen::MatrixXd& values, std::initializer_list<vtkDataA
   return 4 * epsilon * largest_of(values);
 }
 
-/// What is not finite agrees: it is refused, unless there is nothing else.
+/// NaN differences count as equal, because check_rest() refuses such values later. At least one
+/// difference must be finite.
 bool agree(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double rounding) {
   const Eigen::ArrayXXd apart = (a - b).array().abs();
   return apart.isFinite().any() && !(apart > rounding).any();

@@ -8,7 +8,7 @@ namespace mimetra {
 
 namespace {
 
-/// Of the process.
+/// State of the whole process.
 struct Silence {
   std::mutex changing;
   int living = 0;

@@ -2,8 +2,8 @@
 
 namespace mimetra {
 
-/// VTK prints its errors; what goes wrong is thrown instead. It is silent, in all threads, as long
-/// as one of these lives.
+/// Silences VTK's error output, in all threads, as long as an instance exists. mimetra throws
+/// errors instead.
 class SilentVtk {
  public:
   SilentVtk();

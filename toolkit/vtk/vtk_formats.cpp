@@ -32,7 +32,7 @@ std::vector<std::filesystem::path> write(const FieldSequence& fields, const Writ
       request, [&] { return write_vtp_series(fields, request.target, options, context); });
 }
 
-/// Throws MismatchError where frames would be left out.
+/// Throws MismatchError if the target would hold only the first of several frames.
 void check_frame_count(const FrameSource& frames, const std::filesystem::path& target) {
   if (frames.frames() == 1 || lower_extension(target) != ".vtp") return;
   throw MismatchError(target.string() + ": holds one frame, and the sequence has " +
@@ -60,7 +60,7 @@ ReadValue read_sequence_data(const std::string& text, const ReadRequest& request
   FieldSequence read = request.may_stream ? open_vtp_series(text, options, noting)
                                           : read_vtp_series(text, options, noting);
   check_rate(text, read.frames->known_times(), source);
-  // Chosen frames may lie far apart.
+  // The steps between selected frames may differ.
   const std::string odd = source.frames ? "" : note_on_steps(read.frames->known_times());
   if (!odd.empty()) noting.note(odd);
   return {{text, std::move(read)}, vtp_series_files(text), std::move(notes)};

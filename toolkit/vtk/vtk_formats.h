@@ -4,10 +4,10 @@
 
 namespace mimetra {
 
-/// Adds .vtp and .pvd, and scripts (.py) that show regions in ParaView.
+/// Adds the formats of add_vtp(), and scripts (.py) that show regions in ParaView.
 void add_vtk(OperationTable& table);
 
-/// Adds .vtp and .pvd: sequences with fields, regions, and region sets.
+/// Adds .vtp and .pvd for sequences with fields and for regions, and .vtp.series for reading.
 void add_vtp(OperationTable& table);
 
 }  // namespace mimetra

@@ -29,13 +29,13 @@ namespace {
 
 /// How a .vtp file stores the bytes of its arrays.
 struct VtpStorage {
-  std::size_t word = 4;  ///< bytes of the numbers before values: sizes and counts of blocks
+  std::size_t word = 4;  ///< bytes of each number before the values: block counts and sizes
   bool big_endian = false;
-  std::string compressor = {};  ///< class of VTK's; empty for none
+  std::string compressor = {};  ///< name of a VTK class; empty if not compressed
 };
 
-/// What stands before the values of a compressed array: how many blocks, their size, and that of
-/// the last where it is another.
+/// Numbers before the values of a compressed array: number of blocks, size of a block, and size of
+/// the last block if it is smaller (otherwise 0).
 struct VtpBlocks {
   std::uint64_t count, size, last;
 
@@ -44,26 +44,29 @@ struct VtpBlocks {
   }
 };
 
-/// The values of one array where they stand in the file. \pre of blocks: their sizes can be true
+/// Values of one array as stored in the file. \pre check_blocks() accepts the sizes before at() is
+/// called.
 class StoredValues {
  public:
   enum class Form { text, base64, raw };
 
-  /// `stored` begins with the array and may go on behind it. `type` as in the file, "Int32".
+  /// `stored` starts with the array and may continue after it. `type` is the file's, such as
+  /// "Int32".
   StoredValues(const VtpStorage& storage, std::string type, std::string_view stored, Form form);
 
-  /// The first `count` of the numbers before the values; fewer where the array ends.
+  /// Bytes of the first `count` numbers before the values, fewer if the array ends.
   std::string words(std::size_t count) const;
-  /// One of such numbers.
+  /// Number `index` of words().
   std::uint64_t word(const std::string& words, std::size_t index) const;
-  /// Those of a compressed array; nothing where it ends before.
+  /// Blocks of a compressed array, or nothing if the array ends too early.
   std::optional<VtpBlocks> blocks() const;
 
-  /// Whether the file holds as many bytes as stand before the values; of text they are not counted.
+  /// Returns whether the file holds as many bytes as the numbers before the values say. Always true
+  /// for text.
   bool are_all_there() const;
-  /// There are no more of them.
+  /// Upper bound on the number of values.
   std::uint64_t most() const;
-  /// Nothing where there are fewer, or the bytes are not what they should be.
+  /// Value `index`, or nothing if there are fewer values or the bytes are malformed.
   std::optional<double> at(std::uint64_t index) const;
 
  private:
@@ -85,7 +88,7 @@ std::string_view without_margins(std::string_view text) {
   return text;
 }
 
-/// The six bits that a character of base64 stands for; -1 for others.
+/// Six bits that each base64 character encodes, or -1 for other characters.
 constexpr std::array<std::int8_t, 256> kDigitOf = [] {
   constexpr std::string_view kDigits =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -97,7 +100,8 @@ constexpr std::array<std::int8_t, 256> kDigitOf = [] {
   return digits;
 }();
 
-/// Adds the bytes of four characters of base64, one to three. False where they are none.
+/// Appends the one to three bytes that four base64 characters encode. Returns false if a character
+/// is not base64.
 bool decode_group(std::string_view four, std::string& bytes) {
   const std::size_t padding = four[3] != '=' ? 0 : four[2] != '=' ? 1 : 2;
   std::uint32_t bits = 0;
@@ -112,8 +116,8 @@ bool decode_group(std::string_view four, std::string& bytes) {
   return true;
 }
 
-/// The bytes of base64 text from character `begin` on, until it ends or as many are there as are
-/// wanted. As VTK reads it: in groups of four characters without gaps, each with its own padding.
+/// Decodes base64 text from character `begin` on, up to `wanted` bytes. Like VTK, expects groups of
+/// four characters without gaps, each with its own padding.
 std::string decoded(std::string_view text, std::uint64_t begin, std::uint64_t wanted) {
   text = without_margins(text);
   std::string bytes;
@@ -124,7 +128,7 @@ std::string decoded(std::string_view text, std::uint64_t begin, std::uint64_t wa
   return bytes;
 }
 
-/// Characters of so many bytes, which end with their own padding.
+/// Number of base64 characters that encode `bytes` bytes, including padding.
 std::uint64_t base64_characters(std::uint64_t bytes) {
   return (bytes + 2) / 3 * 4;
 }
@@ -142,7 +146,7 @@ double as(const std::string& bytes) {
   return static_cast<double>(number);
 }
 
-/// 0 for what is no number of bytes.
+/// Bytes of a value, or 0 for String and Bit.
 std::size_t size_of(const std::string& type) {
   if (type == "String" || type == "Bit") return 0;
   if (type.ends_with("64")) return 8;
@@ -178,7 +182,7 @@ std::optional<VtpBlocks> StoredValues::blocks() const {
 bool StoredValues::are_all_there() const {
   if (form_ == Form::text) return true;
   std::uint64_t before = storage_.word, bytes = 0;
-  std::uint64_t begin = 0;  // of what stands apart: in base64 the blocks
+  std::uint64_t begin = 0;  // start of the blocks, which base64 encodes separately
   if (storage_.compressor.empty()) {
     const std::string first = words(1);
     if (first.size() < storage_.word) return false;
@@ -241,7 +245,7 @@ std::optional<double> StoredValues::in_text(std::uint64_t index) const {
   }
 }
 
-/// Of an array that is not compressed, with the number before its values.
+/// Bytes of an uncompressed array. `first` counts from the number before the values.
 std::string StoredValues::bytes(std::uint64_t first, std::size_t count) const {
   if (form_ == Form::raw) {
     return first < stored_.size() ? std::string(stored_.substr(first, count)) : "";
@@ -250,7 +254,7 @@ std::string StoredValues::bytes(std::uint64_t first, std::size_t count) const {
   return first < all.size() ? all.substr(first, count) : "";
 }
 
-/// Of a compressed one, of which only the block that holds them is unpacked.
+/// Bytes of a compressed array. Unpacks only the block that contains them.
 std::string StoredValues::unpacked(std::uint64_t first, std::size_t count) const {
   const auto all = blocks();
   if (!all || all->count == 0 || all->size == 0) return "";
@@ -259,7 +263,7 @@ std::string StoredValues::unpacked(std::uint64_t first, std::size_t count) const
   if (sizes.size() < head * storage_.word) return "";
   const std::uint64_t block = first / all->size;
   if (block >= all->count) return "";
-  // Blocks are for a part of an array: a large one for a few values is none of VTK's.
+  // VTK splits arrays into blocks. It does not write a large block for a few values.
   constexpr std::uint64_t kLargeBlock = std::uint64_t{1} << 24U;
   if (all->size > kLargeBlock && all->size > 4 * (first + count)) return "";
   std::uint64_t begin = 0;
@@ -272,7 +276,7 @@ std::string StoredValues::unpacked(std::uint64_t first, std::size_t count) const
     const std::uint64_t place = head_bytes + begin;
     if (place < stored_.size()) packed = stored_.substr(place, packed_size);
   } else {
-    // The blocks are one text behind that of the sizes.
+    // The blocks are one base64 text after the text of the sizes.
     const std::string behind = decoded(stored_, base64_characters(head_bytes), begin + packed_size);
     if (begin < behind.size()) packed = behind.substr(begin);
   }
@@ -303,12 +307,13 @@ double StoredValues::number(std::string bytes) const {
   return type_ == "Float32" ? as<float>(bytes) : as<double>(bytes);
 }
 
-/// No compressor of VTK's makes anything smaller than this share.
+/// Upper bound on the compression ratio of VTK's compressors.
 constexpr std::uint64_t kMostCompressed = 8192;
 constexpr std::uint64_t kMostComponents = 4096;
-/// Values of a whole file may take this much, or so many times the file.
+/// The values of a file may take kUnpackedBytes, or kUnpackedShare times the size of the file,
+/// whichever is larger.
 constexpr double kUnpackedBytes = 256e6, kUnpackedShare = 64;
-/// VTK's time grows with the square of an element's attributes; it writes up to 10.
+/// VTK's time grows with the square of an element's number of attributes. VTK writes up to 10.
 constexpr std::size_t kMostAttributes = 100;
 
 constexpr std::array<std::string_view, 4> kCells = {"Verts", "Lines", "Strips", "Polys"};
@@ -321,12 +326,12 @@ bool is_one_of(const std::array<std::string_view, Size>& all, std::string_view w
   return std::find(all.begin(), all.end(), word) != all.end();
 }
 
-/// The arrays of one kind of cells of a piece, as far as they have been seen.
+/// Arrays of one kind of cells of a piece, as far as they have been read.
 struct Cells {
   std::string name;  ///< "Polys"; empty for none
   std::uint64_t count = 0;
-  std::optional<std::uint64_t> corners = {};  ///< at most
-  std::optional<double> end = {};             ///< that the last cell's offset tells
+  std::optional<std::uint64_t> corners = {};  ///< upper bound
+  std::optional<double> end = {};             ///< offset of the last cell's end
 };
 
 class VtpHeader {
@@ -393,7 +398,7 @@ class VtpHeader {
     }
   }
 
-  /// An attribute that counts something; 0 where it is not there.
+  /// Value of an attribute that is a count, or 0 if the attribute is missing.
   std::uint64_t count(const XmlElement& element, const std::string& key) const {
     const std::string text = element.attribute(key);
     std::uint64_t number = 0;
@@ -412,14 +417,15 @@ class VtpHeader {
   void check_piece(const XmlElement& piece) const {
     for (const char* key :
          {"NumberOfPoints", "NumberOfVerts", "NumberOfLines", "NumberOfStrips", "NumberOfPolys"}) {
-      // Vertices and faces are numbered by int.
+      // mimetra numbers vertices and faces by int.
       if (count(piece, key) > static_cast<std::uint64_t>(std::numeric_limits<int>::max())) {
         fail(std::string(key) + ": " + piece.attribute(key) + " is more than can be numbered");
       }
     }
   }
 
-  /// VTK asks for as many corners as the last offset says, without looking whether they are there.
+  /// Throws IoError if the offsets end beyond the corners. VTK does not check this before it reads
+  /// them.
   void check_cells(Cells& cells, const std::string& name, const StoredValues& values) const {
     if (name == "connectivity") cells.corners = values.most();
     if (name == "offsets") {
@@ -435,7 +441,7 @@ class VtpHeader {
          std::to_string(*cells.corners) + " corners at most");
   }
 
-  /// Its values; nothing where there are none.
+  /// Checks an array and returns its values, or nothing if a binary array is empty.
   std::optional<StoredValues> checked_array(const XmlElement& array) {
     using Form = StoredValues::Form;
     const std::string type = array.attribute("type"), format = array.attribute("format");
@@ -474,7 +480,8 @@ class VtpHeader {
     return values;
   }
 
-  /// The numbers before binary values: their bytes, or how many blocks of which sizes there are.
+  /// Checks the numbers before binary values: their size in bytes, or the number and sizes of
+  /// blocks.
   void check_blocks(const XmlElement& array, const StoredValues& values, std::size_t size) {
     const auto lies = [&] { fail(shown(array) + "the sizes of its blocks cannot be true"); };
     const auto words = [&](std::size_t count) {
@@ -510,7 +517,8 @@ class VtpHeader {
     check_bytes(array, values);
   }
 
-  /// VTK stops without a word where base64 has gaps, and leaves the values behind as they are.
+  /// Throws IoError if bytes are missing. VTK stops silently at a gap in base64 and leaves the
+  /// remaining values unset.
   void check_bytes(const XmlElement& array, const StoredValues& values) const {
     if (values.are_all_there()) return;
     fail(shown(array) + "is truncated, or its base64 has gaps or other characters");
@@ -523,7 +531,7 @@ class VtpHeader {
   bool appended_raw_ = false;
   std::size_t appended_ = std::numeric_limits<std::size_t>::max();
   std::uint64_t most_bytes_ = 0;
-  double unpacked_ = 0;  ///< bytes of the values of compressed arrays so far
+  double unpacked_ = 0;  ///< unpacked bytes of the compressed arrays so far
 };
 
 }  // namespace

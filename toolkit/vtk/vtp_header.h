@@ -5,9 +5,10 @@
 
 namespace mimetra {
 
-/// Throws IoError for a .vtp file that VTK would crash on, or whose counts cannot be true: other
-/// types than VTK knows, more points, faces or values than so many bytes can hold, blocks and
-/// offsets that lie outside of the file.
+/// Checks a .vtp file before VTK reads it. Throws IoError if VTK would crash on the file, or if its
+/// counts cannot be true. This covers types that VTK does not know, and more points, faces or
+/// values than the file's bytes can hold. It also covers blocks and offsets that lie outside the
+/// file.
 void check_vtp_header(const std::string& path, std::string_view text);
 
 }  // namespace mimetra

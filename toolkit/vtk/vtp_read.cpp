@@ -32,7 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What else may be wrong with a file that VTK does not read.
+/// Hint why VTK cannot read a file, or "".
 std::string hint_of(const std::string& text) {
   if (text.find("<AppendedData") == std::string::npos) return "";
   return "; its data are appended, which VTK does not read with newer versions of libexpat: save "
@@ -119,18 +119,19 @@ std::vector<FrameFile> entries_of(const fs::path& path) {
   return entries;
 }
 
-/// The faces of a later frame in the order of the first one's: equal lists are the rule.
+/// Faces of a later frame, in the order of the first frame's. Usually both lists are equal. Throws
+/// MismatchError if the faces differ.
 Connectivity faces_of(vtkPolyData& data, const fs::path& file, const Connectivity& first,
                       const fs::path& first_file) {
   Connectivity found = connectivity_of(data, file.string());
   if (same_faces(found, first)) return found;
-  // In another order, or cut otherwise, but none flipped.
+  // Faces may be in another order or triangulated differently, but not flipped.
   std::optional<Connectivity> ordered = in_order_of(first, found);
   if (ordered && ordered->triangles == first.triangles) return *std::move(ordered);
   throw MismatchError(file.string() + ": other vertices or faces than " + first_file.string());
 }
 
-/// Frames that are read from their files; the first one again.
+/// Frames that are read from their files on demand, including the first one.
 class VtpFrames : public FrameSource {
  public:
   VtpFrames(std::vector<FrameFile> files, SequenceHeader header)
@@ -141,7 +142,7 @@ class VtpFrames : public FrameSource {
     for (Eigen::Index row = 0; row < poses.rows(); ++row) {
       const fs::path& file = files_[static_cast<std::size_t>(first + row)].file;
       const auto data = read_poly_data(file);
-      faces_of(*data, file, connectivity(), files_.front().file);  // throws where they are others
+      faces_of(*data, file, connectivity(), files_.front().file);  // throws if they differ
       const Positions positions = positions_of(*data, file.string());
       poses.row(row) = Eigen::Map<const Eigen::RowVectorXd>(positions.data(), positions.size());
     }
@@ -150,7 +151,7 @@ class VtpFrames : public FrameSource {
   std::vector<FrameFile> files_;
 };
 
-/// What is not a number equals itself.
+/// Returns whether two fields are equal; NaN equals NaN.
 bool is_same(const Field& a, const Field& b) {
   const auto& x = a.values;
   const auto& y = b.values;
@@ -159,7 +160,7 @@ bool is_same(const Field& a, const Field& b) {
          (x.array() == y.array() || (x.array().isNaN() && y.array().isNaN())).all();
 }
 
-/// The fields of all frames looked at, parted into those that are the same in each, and others.
+/// Splits the fields of all frames read into fields that are equal in each frame, and others.
 class ComparedFields {
  public:
   explicit ComparedFields(std::vector<Field> first) : steady_(std::move(first)) {}
@@ -189,8 +190,8 @@ class ComparedFields {
   std::vector<Field> steady_, changing_;
 };
 
-/// What the frames show, of which the first is read already: rest poses in some, as displacements
-/// lead from it and as it came along a pipeline, and the fields of all.
+/// Rest poses and fields found in the frames. `displaced` is implied by displacements, `carried`
+/// came along a pipeline.
 struct Findings {
   std::optional<Positions> displaced;
   std::optional<CarriedRest> carried;
@@ -231,7 +232,7 @@ Findings look_through(vtkPolyData& first, const Positions& positions,
 }
 
 bool may_be_rounded(const Field& field) {
-  // Double precision holds all whole numbers up to here.
+  // Double precision represents all whole numbers up to here.
   const double limit = std::ldexp(1.0, std::numeric_limits<double>::digits);
   return field.integer && (field.values.array().abs() >= limit).any();
 }
@@ -265,7 +266,7 @@ FieldSequence open_vtp_series(const fs::path& path, const VtpReadOptions& option
   std::vector<FrameFile> chosen;
   for (const int frame : options.selected ? options.selected(count) : selected_frames({}, count)) {
     chosen.push_back(all[static_cast<std::size_t>(frame)]);
-    OpenedFile(chosen.back().file);  // throws where it is not there
+    OpenedFile(chosen.back().file);  // throws if the file is missing
   }
   const std::string first = chosen.front().file.string();
   const auto data = read_poly_data(chosen.front().file);

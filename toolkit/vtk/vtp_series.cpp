@@ -52,7 +52,7 @@ void check(const FieldSequence& fields) {
   }
 }
 
-/// The mesh as VTK holds it; from frame to frame only its points and displacements change.
+/// A mesh as vtkPolyData. Only its points and displacements change from frame to frame.
 class FrameData {
  public:
   explicit FrameData(const FieldSequence& fields) : fields_(fields) {
@@ -74,11 +74,13 @@ class FrameData {
   vtkNew<vtkPolyData> data_;
 };
 
-/// A file in memory: writing to a disk that is full, VTK frees what it does not own.
+/// Text of a .vtp file. VTK does not write it to disk, because on a full disk VTK frees memory that
+/// it does not own.
 std::string vtp_text(vtkPolyData& data, VtpCompression compression) {
   const vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetInputData(&data);
-  // VTK up to 9.3 reads no appended data with libexpat from 2.6 on, or Debian 12's with its fixes.
+  // VTK up to 9.3 cannot read appended data with libexpat 2.6 or later, or with Debian 12's
+  // libexpat and its fixes.
   writer->SetDataModeToBinary();
   writer->SetByteOrderToLittleEndian();
   if (compression == VtpCompression::lz4) {
@@ -91,8 +93,8 @@ std::string vtp_text(vtkPolyData& data, VtpCompression compression) {
   return writer->GetOutputString();
 }
 
-/// Meshes for several threads: VTK's arrays remember what was computed for a file, so that each
-/// thread needs its own.
+/// Meshes for several threads. VTK's arrays cache values computed for a file, so each thread needs
+/// its own mesh.
 class FrameDataPool {
  public:
   FrameDataPool(const FieldSequence& fields, VtpCompression compression)
@@ -108,8 +110,8 @@ class FrameDataPool {
       }
     }
     auto data = std::make_unique<FrameData>(fields_);
-    // What the arrays remember shows in the next file: every frame but the first is written by a
-    // mesh that wrote the first one, whichever thread writes it.
+    // The cached values affect the next file. Every mesh therefore writes frame 0 first, so that
+    // files do not depend on the thread that writes them.
     vtp_text(data->at(0), compression_);
     return data;
   }
@@ -140,7 +142,7 @@ std::string escaped_for_json(const std::string& text) {
   return result;
 }
 
-/// A frame's file, relative to the .pvd, and its time.
+/// File of a frame, relative to the .pvd, and its time.
 struct FrameEntry {
   std::string file;
   double time;
@@ -169,7 +171,8 @@ std::string series_text(const std::vector<FrameEntry>& entries) {
   return text + "\n  ]\n}\n";
 }
 
-/// The frames of NAME.pvd; not NAME itself, which people use for the meshes of the same sequence.
+/// Folder for the frames of NAME.pvd. It is not NAME, which people use for the meshes of the same
+/// sequence.
 std::string frames_folder(const std::string& name) {
   return name + "_vtp";
 }

@@ -18,7 +18,7 @@ class PendingOutputs;
 
 enum class VtpCompression { lz4, zlib };
 
-/// As people choose it.
+/// Name of the choice on the command line.
 constexpr std::string_view choice_name(VtpCompression value) {
   switch (value) {
     case VtpCompression::lz4:
@@ -32,9 +32,9 @@ constexpr std::string_view choice_name(VtpCompression value) {
 struct VtpOptions {
   VtpCompression compression = VtpCompression::lz4;
   bool overwrite = false;
-  /// Files and folders that were read, which must stay.
+  /// Files and folders that were read, which must not be overwritten.
   std::vector<std::filesystem::path> inputs = {};
-  /// Outputs that it appears together with; alone without.
+  /// Outputs that appear together with this one; null if it appears alone.
   PendingOutputs* together = nullptr;
 
   static constexpr Option kCompression{"compression", &VtpOptions::compression};
@@ -43,49 +43,54 @@ struct VtpOptions {
 };
 
 /// Writes a sequence with its fields for ParaView: `NAME.pvd` and `NAME.vtp.series` beside a folder
-/// `NAME_vtp` of `NAME_0000.vtp` ..., positions float32, compressed binary, 32-bit ids, times in
-/// seconds, the user's polygons (triangle fields on the polygon: the largest of its triangles).
-/// Given NAME.vtp, only the first frame, in one file. Atomic: the .pvd appears last. Returns the
-/// files written, the one asked for first. Throws OutputError; std::invalid_argument for a field
-/// whose size is not the mesh's, for two fields of one name, and for a target that is neither .pvd
-/// nor .vtp.
+/// `NAME_vtp` of `NAME_0000.vtp` ... For a target NAME.vtp, writes only the first frame, into one
+/// file. Positions are float32, ids 32-bit, times in seconds, and all data compressed binary. The
+/// user's polygons are kept; a triangle field gives each polygon the largest value of its
+/// triangles.
+///
+/// The write is atomic: the .pvd appears last. Returns the files written, beginning with `target`.
+/// Throws OutputError if a file cannot be written, and MismatchError for values beyond single
+/// precision. Throws std::invalid_argument if a field's size does not match the mesh, two fields
+/// share a name, or the target is neither .pvd nor .vtp.
 std::vector<std::filesystem::path> write_vtp_series(const FieldSequence& fields,
                                                     const std::filesystem::path& target,
                                                     const VtpOptions& = {},
                                                     const Context& context = {});
 
 struct VtpReadOptions {
-  /// Chooses frames, 0-based, from their number; all without.
+  /// Returns the frames to read (0-based), given their number; all frames if empty.
   std::function<std::vector<int>(int count)> selected = {};
-  /// False to take none, and to look into no further file for them.
+  /// If false, reads no fields, and opens no further files to compare them.
   bool fields = true;
 
   static constexpr Option kFields{"fields", &VtpReadOptions::fields};
   static constexpr auto declared() { return std::tuple(kFields); }
 };
 
-/// A series as write_vtp_series writes it, and ParaView too: NAME.pvd, NAME.vtp.series, or one
-/// NAME.vtp. Fields are those that all chosen frames have and that do not change over them, for
-/// which each is read once; others are left out, which is noted (those that only some have and the
-/// first has not where DisplacedRest looks). `displacement` gives the rest pose, and is not a
-/// field, where DisplacedRest finds one. The other frames are read when they are needed, which
-/// throws as this does: IoError that names the file, MismatchError if a frame has other vertices or
-/// faces (they may come in another order or be cut otherwise, if none is flipped), Cancelled.
+/// Opens a series as write_vtp_series() or ParaView writes it: NAME.pvd, NAME.vtp.series, or one
+/// NAME.vtp.
+///
+/// Keeps the fields that are equal in all chosen frames, and reads each frame once to compare them.
+/// Notes name the dropped fields, but may omit fields that are missing from the first frame. If
+/// DisplacedRest finds a rest pose, `displacement` gives that pose and is not a field.
+///
+/// The other frames are read when they are needed, with the same errors. Throws IoError, which
+/// names the file, and Cancelled. Throws MismatchError if a frame has other vertices or faces.
+/// Faces may be in another order or triangulated differently, but not flipped.
 FieldSequence open_vtp_series(const std::filesystem::path& path, const VtpReadOptions& = {},
                               const Context& context = {});
 
-/// The same with all frames in memory.
+/// Reads a series like open_vtp_series(), with all frames in memory.
 FieldSequence read_vtp_series(const std::filesystem::path& path, const VtpReadOptions& = {},
                               const Context& context = {});
 
-/// The files that open_vtp_series reads for a path: itself, and the frames it names.
+/// Files that open_vtp_series() reads for a path: the path itself and the frames that it lists.
 std::vector<std::filesystem::path> vtp_series_files(const std::filesystem::path& path);
 
-/// A field on the vertices of a .vtp file (N x c). Throws IoError where the file or field is
-/// missing.
+/// Field on the vertices of a .vtp file (N x c). Throws IoError if the file or field is missing.
 Eigen::MatrixXd read_vtp_field(const std::filesystem::path& path, const std::string& name);
 
-/// The same; nothing where the field is missing.
+/// Field on the vertices of a .vtp file (N x c), or nothing if the field is missing.
 std::optional<Eigen::MatrixXd> find_vtp_field(const std::filesystem::path& path,
                                               const std::string& name);
 

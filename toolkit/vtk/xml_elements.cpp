@@ -82,7 +82,7 @@ class XmlWalk {
     open_.pop_back();
   }
 
-  /// Returns the element's name.
+  /// Reads a start tag and returns its name.
   std::string open() {
     ++at_;
     XmlElement element{word(), {}, open_.empty() ? "" : open_.back(), 0};
@@ -116,13 +116,13 @@ class XmlWalk {
     at_ = end + 1;
   }
 
-  /// With the five entities of XML itself and ASCII's numbers replaced.
+  /// Attribute value with XML's five entities and &#39; replaced.
   std::string plain(std::string_view value) const {
     constexpr std::array<std::pair<std::string_view, char>, 6> kEntities = {
         {{"amp", '&'}, {"lt", '<'}, {"gt", '>'}, {"quot", '"'}, {"apos", '\''}, {"#39", '\''}}};
     std::string text;
     for (std::size_t i = 0; i < value.size(); ++i) {
-      // VTK looks for the end of a tag at the first '>'.
+      // VTK ends a tag at the first '>'.
       if (value[i] == '<' || value[i] == '>') fail("expected no '<' or '>' in a value");
       if (value[i] != '&') {
         text += value[i];

@@ -6,23 +6,23 @@
 #include <string_view>
 #include <vector>
 
-/// XML as ParaView's files use it, read without a library: elements with attributes. Declarations,
-/// and with them entities of a file's own, are refused.
+/// XML as ParaView's files use it, read without a library: elements with attributes. Declarations
+/// are refused, and with them a file's own entities.
 namespace mimetra {
 
 struct XmlElement {
   std::string name;
   std::map<std::string, std::string> attributes;
   std::string parent;      ///< name of the element around it, empty for the root
-  std::size_t end_of_tag;  ///< where what it holds begins
+  std::size_t end_of_tag;  ///< position of its content in the text
 
-  /// Empty where there is none.
+  /// Value of an attribute, or "" if it is missing.
   std::string attribute(const std::string& key) const;
 };
 
-/// All elements in the order of their beginnings, up to an AppendedData, which holds bytes. Throws
-/// IoError with `path` for what is no such XML, for elements that are not closed, and for more than
-/// 32 inside each other.
+/// All elements in the order of their start tags, up to an AppendedData element, which holds bytes.
+/// Throws IoError, beginning with `path`, for malformed XML, unclosed elements, and more than 32
+/// nested elements.
 std::vector<XmlElement> xml_elements(const std::string& path, std::string_view text);
 
 }  // namespace mimetra

@@ -16,8 +16,8 @@ bl_info = {
 
 
 def _register(operation, order):
-    """An operation's classes; returns that of its settings. Blender may not take those of plugins:
-    such an operation is left out, and None returned."""
+    """Registers an operation's classes and returns the class of its settings. If Blender refuses a
+    class, leaves the operation out and returns None."""
     before = classes.count()
     try:
         operators.register(operation)

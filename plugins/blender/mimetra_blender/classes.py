@@ -1,4 +1,4 @@
-"""The classes that the add-on has registered with Blender."""
+"""Classes that the add-on has registered with Blender."""
 
 import bpy
 
@@ -15,6 +15,6 @@ def count():
 
 
 def unregister(count):
-    """Takes back all but the first `count`."""
+    """Unregisters all classes but the first `count`."""
     while len(_registered) > count:
         bpy.utils.unregister_class(_registered.pop())

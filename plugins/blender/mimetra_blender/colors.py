@@ -1,11 +1,11 @@
-"""Colours of fields, as Blender's colour attributes hold them: linear, with alpha."""
+"""Colours of fields, as Blender's colour attributes store them: linear, with alpha."""
 
 import colorsys
 
 import numpy as np
 
 _OUTSIDE = (205 / 255, 190 / 255, 178 / 255)
-# Dark blue over green to yellow, in sRGB: even steps look even, in grey too.
+# Dark blue through green to yellow, in sRGB. Even steps look even, also in grey.
 _RAMP = np.array([[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]]) / 255
 _GOLDEN = 0.61803398875
 
@@ -19,7 +19,7 @@ def _with_alpha(srgb):
 
 
 def _of_indices(values):
-    """One colour for each index, grey for negative ones; neighbours differ."""
+    """Colours of indices: neighbouring numbers differ, and negative ones are clay-coloured."""
     known, places = np.unique(values, return_inverse=True)
     table = np.array([colorsys.hsv_to_rgb(index * _GOLDEN % 1, 0.7, 0.95) if index >= 0
                       else _OUTSIDE for index in known.tolist()])
@@ -27,7 +27,8 @@ def _of_indices(values):
 
 
 def of_field(values):
-    """N x 4 for N values: a ramp from the least to the largest, or a colour for each integer."""
+    """Colours (N x 4) of N values: a ramp from the least to the largest, or a colour for each
+    integer."""
     if values.dtype == np.int32:
         return _with_alpha(_of_indices(values))
     known = values[np.isfinite(values)]
@@ -39,8 +40,9 @@ def of_field(values):
 
 
 def of_regions(region, colors, faces):
-    """C x 4 for all corners: each face has the colour of the region (N, -1 outside) of most of its
-    corners, of those the lowest number; `colors` (R x 3, 0 to 255) are those of pictures."""
+    """Colours (C x 4) of all corners. A face has the colour of the region of most of its corners;
+    ties go to the lowest number. `region` (N) is -1 outside, and `colors` (R x 3, 0 to 255) are the
+    colours in pictures."""
     sizes, corners = faces
     face = np.repeat(np.arange(len(sizes)), sizes)
     pairs, counts = np.unique(np.column_stack([face, region[corners]]), axis=0, return_counts=True)

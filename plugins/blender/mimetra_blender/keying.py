@@ -5,11 +5,11 @@ import numpy as np
 
 from . import mimetra, sources
 
-_LARGEST_KEY = 10  # of the sliders of shape keys
+_LARGEST_KEY = 10  # limit of the sliders of shape keys
 
 
 def _own_action(keys):
-    """An action of these shape keys alone."""
+    """Returns an action that only these shape keys use."""
     animation = keys.animation_data_create()
     if animation.action is None:
         animation.action = bpy.data.actions.new(keys.name)
@@ -19,13 +19,13 @@ def _own_action(keys):
 
 
 def _path_of(key):
-    """Where the value of a shape key is animated."""
+    """Data path of a shape key's value."""
     return f'key_blocks["{bpy.utils.escape_identifier(key)}"].value'
 
 
 def check_can_be_keyed(subject):
-    """Throws Mismatch where a driver holds a shape key that would be keyed, or their NLA strips
-    are being edited."""
+    """Throws Mismatch if a driver controls a shape key that would be keyed, or if an NLA strip of
+    the shape keys is being edited."""
     animation = subject.data.shape_keys.animation_data
     if not animation:
         return
@@ -40,13 +40,13 @@ def check_can_be_keyed(subject):
 
 
 def set_keys(subject, weights, frames):
-    """Keyed values of an object's shape keys, {name: F}. Keys before the first and behind the last
-    of the frames stay, and so do other curves."""
+    """Keys the values of an object's shape keys, {name: F}. Keys outside the range of the frames
+    stay, and so do other curves."""
     keys = subject.data.shape_keys
     action = _own_action(keys)
     curves = {}
     for name, values in weights.items():
-        # Blender keeps values within the range of their slider.
+        # Blender limits values to the range of their slider.
         key = keys.key_blocks[name]
         key.slider_min = min(key.slider_min, values.min())
         key.slider_max = max(key.slider_max, values.max())
@@ -60,7 +60,7 @@ def set_keys(subject, weights, frames):
 
 
 def _set_points(curve, frames, values):
-    """Points at frames, in place of those from the first to the last of these."""
+    """Sets points at frames, and removes older points between the first and the last frame."""
     made = np.column_stack([frames, values]).astype(np.float32)
     first, last = made[0, 0], made[-1, 0]
     points = curve.keyframe_points
@@ -79,7 +79,7 @@ def _set_points(curve, frames, values):
 
 
 def _why_unseen(subject, curves):
-    """What makes an object show other values than are keyed on these curves, {name: curve}."""
+    """Reasons why an object does not show the values keyed on these curves, {name: curve}."""
     reasons = []
     altered = [name for name, curve in curves.items()
                if curve.mute or curve.group and curve.group.mute
@@ -107,21 +107,23 @@ def _why_unseen(subject, curves):
 
 
 def _moves_any(track, paths):
-    """True where a strip of a track animates one of these data paths."""
+    """Returns whether a strip of a track animates one of these data paths."""
     return any(not strip.mute and strip.action
                and any(curve.data_path in paths for curve in strip.action.fcurves)
                for strip in track.strips)
 
 
 def keyed_weights(subject, table):
-    """The columns of a table that are an object's shape keys, {name: F}; all must be known."""
+    """Columns of a table that are an object's shape keys, {name: F}. None if a column is unknown or
+    there are no columns."""
     names = {key.name for key in sources.expression_keys(subject)}
     columns = {name: table[name] for name in table if name not in ("time", "frame")}
     return columns if columns and set(columns) <= names else None
 
 
 def holds(model, weights, positions):
-    """True where shape keys with these weights are the poses: a head's motion is none of theirs."""
+    """Returns whether shape keys with these weights give the poses. Shape keys do not include the
+    motion of the head."""
     names = model["expression_names"]
     beta = np.column_stack([weights.get(name, np.zeros(len(positions))) for name in names])
     poses = model["neutral"] + np.tensordot(beta, model["expressions"], 1)

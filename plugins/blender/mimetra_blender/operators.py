@@ -10,13 +10,13 @@ import bpy
 
 from . import classes, keying, mimetra, properties, results, sources
 
-# Shares of a run: reading poses, computing, showing.
+# Shares of a run at which reading and computing end; showing comes last.
 _READING, _COMPUTING = 0.3, 0.95
-_STEP = 0.05  # seconds between looks at the user's keys
+_STEP = 0.05  # seconds between checks of the user's keys
 
 
 class _Warnings(logging.Handler):
-    """What the library warns of during a run."""
+    """Collects the library's warnings during a run."""
 
     def __init__(self):
         super().__init__(logging.WARNING)
@@ -27,7 +27,7 @@ class _Warnings(logging.Handler):
 
 
 def _part(steps, begin, end):
-    """Yields the shares of some steps as part of a whole; returns what they do."""
+    """Yields the shares of some steps as part of a whole; returns their result."""
     while True:
         try:
             share = next(steps)
@@ -37,7 +37,7 @@ def _part(steps, begin, end):
 
 
 def _free(path, name):
-    """The path, if there is one, where nothing stands yet."""
+    """Returns the path, if any. Throws OutputError if it exists already."""
     if path and os.path.exists(path):
         raise mimetra.OutputError(f"{path}: exists already; choose another name for {name}, or"
                                   " remove it")
@@ -45,7 +45,7 @@ def _free(path, name):
 
 
 def _computed(operation, inputs, options):
-    """Yields the share done; returns the result. Closing it cancels the computation."""
+    """Yields the share done; returns the result. Closing the generator cancels the computation."""
     state = {"share": 0.0}
     cancelled = threading.Event()
 
@@ -74,13 +74,13 @@ def _computed(operation, inputs, options):
 
 
 def _is_animation(port):
-    """True for sequences that are shown by their poses, not by fields on their source."""
+    """Returns whether an output is a sequence shown by its poses, not by fields on its source."""
     return port.kind is mimetra.Sequence and not port.fields
 
 
 class _Run:
-    """What all operators share; `_operation` is that of the table. Names without a leading
-    underscore are Blender's own: any other may be a parameter's."""
+    """Base of all operators; `_operation` is the operation in the table. Names without a leading
+    underscore are Blender's own, because a parameter may have any other name."""
 
     _operation = None
 
@@ -98,7 +98,7 @@ class _Run:
         return True
 
     def _frames(self, scene):
-        """The frames asked for, or the scene's."""
+        """Requested frames, or the scene's."""
         start = self.frame_start if self.properties.is_property_set("frame_start") \
             else scene.frame_start
         end = self.frame_end if self.properties.is_property_set("frame_end") else scene.frame_end
@@ -107,7 +107,7 @@ class _Run:
         return list(range(start, end + 1, self.frame_step))
 
     def _object(self, port):
-        """The object that an input names."""
+        """Object that an input names, or None."""
         name = getattr(self, properties.property_name(port.name))
         if not name:
             if port.optional:
@@ -120,7 +120,7 @@ class _Run:
         return subject
 
     def _value(self, context, port, subject, frames):
-        """Yields the share done; returns the value of an object or a path as an input."""
+        """Yields the share done; returns the value of an input, from an object or a path."""
         if port in properties.object_inputs(self._operation):
             if port.kind is mimetra.Model:
                 return sources.model(subject)
@@ -137,14 +137,14 @@ class _Run:
         return path or None
 
     def _groups(self, subject):
-        """The vertex groups of an object that parameters name."""
+        """Vertex groups of an object that parameters name."""
         groups = subject.vertex_groups.keys()
         return properties.groups_among(
             [properties.value_of(parameter, self.properties, groups)
              for parameter in properties.parameters_of(self._operation)], groups)
 
     def _inputs(self, context, frames):
-        """Yields the share done; returns the inputs by name, and the objects they are of."""
+        """Yields the share done; returns the inputs by name, and their objects by name."""
         values, objects = {}, {}
         active = properties.active_input(self._operation)
         for port in self._operation.inputs:
@@ -160,7 +160,7 @@ class _Run:
         return values, objects
 
     def _options(self, objects):
-        """The parameters that were set, and the optional outputs that are wanted."""
+        """Parameters that the user set, and optional outputs to make."""
         options = {}
         active = properties.active_input(self._operation)
         source = objects.get(mimetra.python_name(active.name)) if active else None
@@ -169,7 +169,7 @@ class _Run:
             value = properties.value_of(parameter, self.properties, groups)
             if value is not None:
                 options[mimetra.python_name(parameter.name)] = value
-        # Vertices that are solved for have no weights.
+        # The space 'vertex' gives no weights.
         keyed = None if options.get("space") == "vertex" else self._keyed(objects)
         outputs = properties.outputs_of(self._operation)
         for port in outputs:
@@ -187,7 +187,7 @@ class _Run:
         return options
 
     def _keyed(self, objects):
-        """The object whose shape keys may hold the result: the model's of the inputs."""
+        """Object whose shape keys may hold the result: the model among the inputs, or None."""
         for port in self._operation.inputs:
             subject = objects.get(mimetra.python_name(port.name))
             if port.kind is mimetra.Model and subject and sources.expression_keys(subject):
@@ -195,7 +195,7 @@ class _Run:
         return None
 
     def _steps(self, context):
-        """Yields the share of the work done. Nothing has changed before its last step."""
+        """Yields the share of the work done. Changes nothing before its last step."""
         frames = self._frames(context.scene)
         values, objects = yield from _part(self._inputs(context, frames), 0, _READING)
         options = self._options(objects)
@@ -206,8 +206,8 @@ class _Run:
         yield 1.0
 
     def _show(self, context, result, values, objects, frames):
-        """Shows what was made, on the target where there is one. What may fail comes before what
-        changes the scene: values that do not fit, files, caches."""
+        """Shows the outputs, on the target if there is one. Steps that may fail come before changes
+        to the scene: checks of values, files, caches."""
         made = [(port, getattr(result, mimetra.python_name(port.name)))
                 for port in properties.outputs_of(self._operation)]
         made = [(port, value) for port, value in made if value is not None]
@@ -232,7 +232,8 @@ class _Run:
             self.report({"INFO"}, result.summary.strip())
 
     def _show_on_target(self, made, values, target, frames):
-        """Shape keys where they can hold the result, else a mesh cache. False for neither."""
+        """Shows the result by shape keys if they can hold it, else by a mesh cache. Returns False
+        if the target has other faces or there is no sequence."""
         sequence = next((value for port, value in made if _is_animation(port)), None)
         if sequence is None or not results.has_faces_of(target, sequence):
             return False
@@ -252,7 +253,7 @@ class _Run:
         return True
 
     def _show_value(self, context, port, value, source, frames):
-        """One output where no target takes it."""
+        """Shows an output that the target does not take."""
         name = f"{source.name} {self._operation.name}" if source else self._operation.name
         if port.kind is mimetra.Sequence:
             if source and not _is_animation(port):
@@ -272,13 +273,13 @@ class _Run:
             results.show_regions(value, source)
 
     def _path_of(self, port):
-        """Where an output goes that goes into a file; None for those that are shown."""
+        """Path of an output that goes into a file; None for outputs that are shown."""
         path = properties.is_written(port) and getattr(self, properties.property_name(port.name))
         return bpy.path.abspath(path) if path else None
 
     @contextlib.contextmanager
     def _reported(self):
-        """Errors and warnings of the library as those of Blender."""
+        """Reports the library's warnings in Blender."""
         warnings = _Warnings()
         logger = logging.getLogger("mimetra")
         logger.addHandler(warnings)
@@ -342,7 +343,7 @@ class _Run:
         return {"RUNNING_MODAL"}
 
     def cancel(self, context):
-        """Blender ends, or opens another file."""
+        """Called when Blender quits or opens another file."""
         self._running.close()
         context.window_manager.event_timer_remove(self._timer)
 
@@ -354,7 +355,7 @@ class _Run:
 
 
 def idname(operation):
-    """The name of an operation's operator."""
+    """Name of an operation's operator."""
     return f"mimetra.{mimetra.python_name(operation.name)}"
 
 

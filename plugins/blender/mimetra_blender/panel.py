@@ -4,7 +4,7 @@ import bpy
 
 from . import classes, mimetra, operators, properties, settings
 
-# Operations and parameters that are looked for first; all others follow.
+# Operations and parameters that users look for first; all others follow.
 _FIRST = ("transfer", "regions")
 _MAIN = ("k", "radius", "coverage", "full", "space", "source", "on")
 _FEW = 8
@@ -19,7 +19,7 @@ class _Panel:
 
 
 def _main_parameters(operation):
-    """Those at the top of a panel: all where there are few."""
+    """Parameters at the top of a panel: all of them if there are few."""
     parameters = properties.parameters_of(operation)
     if len(parameters) <= _FEW:
         return parameters
@@ -95,7 +95,7 @@ class _MorePanel(_Panel):
 
 
 def _split(layout):
-    """A column with names on the left."""
+    """Returns a column with names on the left."""
     layout.use_property_split = True
     layout.use_property_decorate = False
     return layout.column()
@@ -118,7 +118,7 @@ def _add(base, identifier, label, operation, more):
 
 
 def in_order():
-    """The operations as their panels follow each other."""
+    """Operations in the order of their panels."""
     names = [*(name for name in _FIRST if name in mimetra.operations),
              *(name for name in mimetra.operations if name not in _FIRST)]
     return [mimetra.operations[name] for name in names]

@@ -7,13 +7,13 @@ from bpy.props import (BoolProperty, EnumProperty, FloatProperty, IntProperty, P
 
 from . import mimetra
 
-# What an operation makes and Blender can show; all else goes into files.
+# Kinds of output that Blender can show. All others go into files.
 SHOWN = (mimetra.Sequence, mimetra.Model, mimetra.Components, mimetra.Regions, mimetra.Table,
          mimetra.Pictures)
 _OPEN = 2**31 - 1
 _FIELD = "field:NAME"  # the choice of parameters that take a vertex field
-_UNSET = "DEFAULT"  # of choices without one; names of the table have small letters
-# Names that parameters cannot have: of properties below, and of Blender's.
+_UNSET = "DEFAULT"  # default of choices without one; the table's names are in lower case
+# Names that parameters cannot have: properties below, and Blender's own.
 _OWN = {"frame_start", "frame_end", "frame_step", "use_frames", "cache_format", "cache_folder",
         "manifest"}
 _RESERVED = _OWN.union(*(
@@ -22,7 +22,7 @@ _RESERVED = _OWN.union(*(
 
 
 def property_name(name):
-    """A name of the table as a property's."""
+    """Name of the property for a name of the table."""
     made = mimetra.python_name(name)
     return made + "_" if made in _RESERVED else made
 
@@ -33,30 +33,31 @@ def _label(each):
 
 
 def object_inputs(operation):
-    """The inputs that are objects. A model for landmarks is read: it needs identities, which no
-    object has."""
+    """Inputs that are objects. A model for landmarks is read from a file, because it needs
+    identities, which objects do not have."""
     with_landmarks = any(port.kind is mimetra.Landmarks for port in operation.inputs)
     kinds = (mimetra.Sequence,) if with_landmarks else (mimetra.Sequence, mimetra.Model)
     return [port for port in operation.inputs if port.kind in kinds]
 
 
 def active_input(operation):
-    """The input that is the active object; None where an operation has none of objects."""
+    """Input that is the active object, or None if the operation takes no objects."""
     return next((port for port in object_inputs(operation) if not port.optional), None)
 
 
 def is_object(operation, port):
-    """True for inputs that are other objects."""
+    """Returns whether an input is an object other than the active one."""
     return port in object_inputs(operation) and port is not active_input(operation)
 
 
 def is_optional_number(parameter):
-    """True where a number may be left out, so that it needs a switch beside it."""
+    """Returns whether a number may be left out, so that it needs a switch beside it."""
     return parameter.kind in ("integer", "number", "length") and parameter.default is None
 
 
 def parameters_of(operation):
-    """The parameters of an operation; without those of reading where an object is what it reads."""
+    """Parameters of an operation. Leaves out the parameters of reading files if the operation works
+    on the active object."""
     reads = active_input(operation) is None
     return [parameter for parameter in operation.parameters if reads or not parameter.of_files]
 
@@ -84,13 +85,15 @@ def _choice(parameter, common):
 
 
 def _length(parameter, common):
-    """A share of the diameter; the switch beside it makes it a length of the mesh."""
+    """Property of a length: a share of the diameter, or a length of the mesh if the switch beside
+    it is on."""
     return FloatProperty(default=_share(parameter.default), min=max(parameter.minimum or 0, 0),
                          soft_max=1, precision=3, **common)
 
 
 def _share(default):
-    """Of a length that has none, what is of use on a face when it is switched on."""
+    """Default share of the diameter. A length without a default gets a share that is useful on a
+    face."""
     return float(default) if default and not default.endswith("abs") else 0.1
 
 
@@ -103,7 +106,8 @@ def _path(parameter, common):
 
 
 def _suggestions(parameter, context):
-    """The words that stand beside paths; for a vertex field the active object's groups."""
+    """Words that a path property also accepts. For a vertex field, includes the active object's
+    vertex groups."""
     subject = context.active_object
     takes_groups = _FIELD in parameter.choices and subject and subject.type == "MESH"
     groups = [group.name for group in subject.vertex_groups] if takes_groups else []
@@ -144,17 +148,17 @@ def _input_property(operation, port, options, pointers):
 
 
 def outputs_of(operation):
-    """Those that Blender has a place for: documents are for other programs."""
+    """Outputs that Blender has a place for. Documents are for other programs."""
     return [port for port in operation.outputs if port.kind is not mimetra.Document]
 
 
 def is_written(port):
-    """True for outputs that go into files, those of components where a path is given."""
+    """Returns whether an output can go into a file. Components do so only if a path is given."""
     return port.kind not in SHOWN or port.kind is mimetra.Components
 
 
 def needs_path(port):
-    """True for outputs that are always made, and can only go into files."""
+    """Returns whether an output is always made and can only go into a file."""
     return not port.optional and port.kind not in SHOWN
 
 
@@ -189,8 +193,9 @@ def _run_properties(options):
 
 
 def annotations_of(operation, *, pointers):
-    """All properties of an operation; `pointers` to objects in settings, their names otherwise."""
-    # What an operator ran with before is not what the panel says now.
+    """All properties of an operation. With `pointers`, objects are pointers, as in settings;
+    otherwise their names."""
+    # The panel's values apply, and not the values of an operator's last run.
     options = set() if pointers else {"SKIP_SAVE"}
     made = _run_properties(options)
     if pointers:
@@ -211,8 +216,8 @@ def annotations_of(operation, *, pointers):
 
 
 def groups_among(values, groups):
-    """The vertex groups that parameters name as fields; all of them where a name is of none, whose
-    message lists those that are there."""
+    """Vertex groups that parameters name as fields. Returns all groups if none matches, so that the
+    error message lists them."""
     prefix = _FIELD.removesuffix("NAME")
     naming = [value for value in values if isinstance(value, str) and prefix in value]
     named = tuple(group for group in groups if any(group in value for value in naming))
@@ -220,8 +225,8 @@ def groups_among(values, groups):
 
 
 def value_of(parameter, properties, groups=()):
-    """A parameter for the library; None where the user left it as it is. The names of vertex
-    groups stand for their fields."""
+    """Value of a parameter for the library, or None if the user did not set it. A vertex group's
+    name becomes its field."""
     name = property_name(parameter.name)
     absolute = parameter.kind == "length" and getattr(properties, f"{name}_absolute")
     if not properties.is_property_set(name):
@@ -234,7 +239,7 @@ def value_of(parameter, properties, groups=()):
     if parameter.kind == "length":
         return f"{np.float32(value)}{'abs' if absolute else ''}"
     if isinstance(value, float):
-        return str(np.float32(value))  # what was typed, not its nearest double
+        return str(np.float32(value))  # the typed number, not its nearest double
     if value == _UNSET:
         return None
     if value in groups and _FIELD in parameter.choices:

@@ -1,4 +1,4 @@
-"""What operations make, as Blender shows it."""
+"""Shows the outputs of operations in Blender."""
 
 import copy
 import csv
@@ -15,12 +15,12 @@ from . import colors, keying, mimetra, sources
 _MODIFIER = "mimetra"
 _GROUP = "mimetra region"
 _LONGEST_NAME = 63  # bytes
-_OF_ANY_MESH = {"material_index", "position"}  # attributes
+_OF_ANY_MESH = {"material_index", "position"}  # attributes of every mesh
 
 
 class Frames:
-    """Where results lie in time, and where their caches go. Counted are the frames of animation,
-    which Time Stretching makes others than the scene's."""
+    """Times of results, and the folder of their caches. Frames are counted in animation time, which
+    differs from the scene's frames under Time Stretching."""
 
     def __init__(self, scene, frames, cache_format, cache_folder):
         render = scene.render
@@ -34,23 +34,23 @@ class Frames:
         self.notes = []  # for the user
 
     def of(self, times):
-        """The same for poses at these times in seconds, of which the first is at the start."""
+        """Frames for poses at `times` in seconds; the first pose is at the start."""
         if len(times) < 2:
             return self
         made = copy.copy(self)
-        # Rounded, since frames that the scene gave must come out as they were.
+        # Rounding keeps frames that came from the scene exact.
         made.offsets = np.round((times - times[0]) * self.rate, 4)
         made.step = made.offsets[-1] / (len(times) - 1)
         return made
 
     def at(self, count):
-        """The frames of so many poses."""
+        """Frames of `count` poses."""
         return self.start + (self.step * np.arange(count) if self.offsets is None
                              else self.offsets)
 
 
 def _cache_folder(frames):
-    """The folder of caches; a temporary one as long as the file has no place."""
+    """Folder of caches, or a temporary one if the file has not been saved."""
     if frames.folder.startswith("//") and not bpy.data.filepath:
         frames.notes.append("The file has not been saved: its mesh cache goes when Blender ends;"
                             " save the file, then run again")
@@ -59,7 +59,8 @@ def _cache_folder(frames):
 
 
 def _cache_path(folder, name, extension):
-    """A path in a folder that no file has yet: undo brings back what an older one shows."""
+    """Path in a folder that no file has yet. An older cache stays, because undo may bring back its
+    object."""
     stem = bpy.path.clean_name(name)
     path, number = folder / f"{stem}.{extension}", 1
     while path.exists():
@@ -69,14 +70,14 @@ def _cache_path(folder, name, extension):
 
 
 def write_mesh_cache(value, frames, name):
-    """A file of a value's poses that play_mesh_cache plays."""
+    """Writes a value's poses to a file for play_mesh_cache(), and returns its path."""
     times = frames.at(len(value["positions"])) / frames.rate
     poses = mimetra.Sequence(value["positions"], value.faces, times=times)
     folder = _cache_folder(frames)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         path = _cache_path(folder, name, frames.cache_format.lower())
-        # Blender has the faces: what would stand beside the cache goes with this folder.
+        # Blender has the faces, so files beside the cache are deleted with this folder.
         with tempfile.TemporaryDirectory(prefix=".mimetra_", dir=folder) as scratch:
             poses.save(pathlib.Path(scratch) / path.name)
             (pathlib.Path(scratch) / path.name).rename(path)
@@ -88,7 +89,7 @@ def write_mesh_cache(value, frames, name):
 
 
 def play_mesh_cache(subject, path, frames):
-    """Lets an object follow the poses of a file by a Mesh Cache modifier."""
+    """Makes an object follow the poses of a file with a Mesh Cache modifier."""
     modifier = subject.modifiers.get(_MODIFIER)
     if modifier is None:
         modifier = subject.modifiers.new(_MODIFIER, "MESH_CACHE")
@@ -98,7 +99,7 @@ def play_mesh_cache(subject, path, frames):
     modifier.cache_format = frames.cache_format
     modifier.filepath = bpy.path.relpath(str(path)) if saved else str(path)
     modifier.time_mode, modifier.play_mode = "FRAME", "SCENE"
-    # Blender takes the start off after the scale.
+    # Blender subtracts the start after scaling.
     modifier.frame_scale = 1 / frames.step
     modifier.frame_start = frames.start / frames.step
     modifier.forward_axis, modifier.up_axis = "POS_Y", "POS_Z"
@@ -111,7 +112,8 @@ def remove_mesh_cache(subject):
 
 
 def _new_object(context, name, vertices, faces, beside=None):
-    """An object of a new mesh: upright, since files have y up, or beside another."""
+    """Adds an object with a new mesh: upright, because files have y up, or beside another
+    object."""
     mesh = bpy.data.meshes.new(name)
     ends = np.cumsum(faces.sizes)
     polygons = [part.tolist() for part in np.split(faces.corners, ends[:-1])]
@@ -127,7 +129,8 @@ def _new_object(context, name, vertices, faces, beside=None):
 
 
 def _copied_object(subject, name, rest):
-    """A copy of an object that moves by nothing but what it is given, beside it."""
+    """Adds a copy of an object beside it, with other positions and without modifiers and shape
+    keys."""
     made = subject.copy()
     made.name = name
     made.data = subject.data.copy()
@@ -143,7 +146,7 @@ def _copied_object(subject, name, rest):
 
 
 def _layers_of(subject):
-    """The names of what an object has on its vertices, corners and faces."""
+    """Names of an object's data on vertices, corners and faces."""
     mesh = subject.data
     others = {*_OF_ANY_MESH, *mesh.uv_layers.keys()}
     kinds = {"UV maps": mesh.uv_layers.keys(),
@@ -155,15 +158,15 @@ def _layers_of(subject):
 
 
 def has_faces_of(subject, value):
-    """True where a value has an object's polygons."""
+    """Returns whether a value has an object's polygons."""
     faces = sources.faces_of(subject.data)
     return (np.array_equal(value["face_sizes"], faces.sizes)
             and np.array_equal(value["corners"], faces.corners))
 
 
 def show_sequence(context, value, subject, frames, name):
-    """A sequence as an object with a mesh cache and its fields: a copy of `subject` where it has
-    its polygons."""
+    """Shows a sequence and its fields as an object with a mesh cache. The object is a copy of
+    `subject` if both have the same polygons."""
     frames = frames.of(value["times"])
     path = write_mesh_cache(value, frames, name)
     rest = value["rest"] if "rest" in value else value["positions"][0]
@@ -182,7 +185,7 @@ def show_sequence(context, value, subject, frames, name):
 
 
 def _show_shapes(context, name, neutral, faces, shapes, weights, frames, beside=None):
-    """An object with shape keys, {name: N x 3}, keyed by weights, {name: F}."""
+    """Adds an object with shape keys, {name: N x 3}, keyed by weights, {name: F}."""
     made = _new_object(context, name, neutral, faces, beside)
     made.shape_key_add(name="Basis", from_mix=False)
     keyed = {}
@@ -198,8 +201,8 @@ def _show_shapes(context, name, neutral, faces, shapes, weights, frames, beside=
 
 
 def show_model(context, value, frames, name):
-    """A model with its performance, if it has one, and each of its identities with the same shape
-    keys."""
+    """Shows a model, with its performance if it has one. Each identity becomes an object with the
+    same shape keys."""
     frames = frames.of(value["times"]) if "times" in value else frames
     shapes, weights = {}, {}
     if "expressions" in value:
@@ -218,7 +221,7 @@ def show_model(context, value, frames, name):
 
 
 def show_components(context, value, subject, frames, name):
-    """Components as shape keys with their weights over time."""
+    """Shows components as shape keys with their weights over time."""
     shapes = {f"component {index:02}": displacement
               for index, displacement in enumerate(value["displacements"])}
     weights = dict(zip(shapes, value["weights"].T)) if "weights" in value else {}
@@ -228,13 +231,13 @@ def show_components(context, value, subject, frames, name):
 
 
 def _shown_fields(value):
-    """The names of fields on vertices, and of those on triangles where its polygons are known."""
+    """Names of fields on vertices, and of fields on triangles if the polygons are known."""
     places = {"vertices", "triangles"} if "face_of_triangle" in value else {"vertices"}
     return [name for name in value if value.location(name) in places]
 
 
 def check_fits(value, subject):
-    """Throws Mismatch where regions or fields are of another mesh than an object's."""
+    """Throws Mismatch if regions or fields belong to a mesh other than an object's."""
     name = value.name or "the result"
     is_regions = isinstance(value, mimetra.Regions)
     count = value["masks"].shape[1] if is_regions else value["positions"].shape[1]
@@ -248,7 +251,7 @@ def check_fits(value, subject):
 
 
 def show_regions(value, subject):
-    """Regions as vertex groups, and their fields."""
+    """Shows regions as vertex groups, and their fields."""
     masks = value["masks"]
     earlier = re.compile(f"{_GROUP} [0-9]+")
     for group in [each for each in subject.vertex_groups if earlier.fullmatch(each.name)]:
@@ -260,7 +263,7 @@ def show_regions(value, subject):
 
 
 def show_fields(value, subject):
-    """Fields as attributes with their values, and numbers on vertices as colours too."""
+    """Shows fields as attributes with their values, and numbers on vertices as colours too."""
     mesh = subject.data
     names = _shown_fields(value)
     shown = [name for name in names
@@ -281,12 +284,12 @@ def show_fields(value, subject):
 
 
 def _attribute_name(name):
-    """A name as Blender keeps it."""
+    """Name as Blender stores it."""
     return name.encode()[:_LONGEST_NAME].decode(errors="ignore")
 
 
 def _replace(mesh, name, type, domain):
-    """A new attribute in place of one of that name."""
+    """Adds an attribute, and removes an older one of the same name."""
     name = _attribute_name(name)
     old = mesh.attributes.get(name)
     if old:
@@ -295,13 +298,13 @@ def _replace(mesh, name, type, domain):
 
 
 def _show_attribute(mesh, value, name):
-    """One field's values; those of triangles at the largest of their polygon."""
+    """Shows a field as an attribute. A polygon gets the largest value of its triangles."""
     values = np.asarray(value[name])
     domain = "POINT"
     if value.location(name) == "triangles":
         least = np.iinfo(values.dtype).min if values.dtype.kind in "iu" else np.nan
         of_polygons = np.full((len(mesh.polygons), *values.shape[1:]), least, values.dtype)
-        # A number where any triangle has one.
+        # fmax ignores NaN if any triangle has a number.
         np.fmax.at(of_polygons, value["face_of_triangle"], values)
         values, domain = of_polygons, "FACE"
     integer = values.dtype == np.int32
@@ -316,19 +319,19 @@ def _show_attribute(mesh, value, name):
 
 
 def show_pictures(name, value):
-    """Pictures as images of the file; several with their numbers behind the name."""
+    """Shows pictures as images of the file. Several pictures have numbers after the name."""
     for array in value:
         _, _, number = array.partition("_")
         _show_picture(f"{name} {int(number):04}" if number else name, value[array])
 
 
 def _show_picture(name, pixels):
-    """An image of the file in place of one of that name."""
+    """Adds an image to the file, and removes an older one of the same name."""
     old = bpy.data.images.get(name)
     if old:
         bpy.data.images.remove(old)
     image = bpy.data.images.new(name, pixels.shape[1], pixels.shape[0])
-    # From the bottom left, with alpha.
+    # Blender's pixels start at the bottom left and have alpha.
     shown = np.ones((*pixels.shape[:2], 4), np.float32)
     shown[..., :3] = pixels[::-1] / 255
     image.pixels.foreach_set(shown.ravel())
@@ -336,14 +339,14 @@ def _show_picture(name, pixels):
 
 
 def show_text(name, text):
-    """Text in a text block, in place of one of that name."""
+    """Writes text to a text block, and replaces older text of the same name."""
     block = bpy.data.texts.get(name) or bpy.data.texts.new(name)
     block.clear()
     block.write(text)
 
 
 def csv_of(table):
-    """A table as text."""
+    """CSV text of a table."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(table)
@@ -353,7 +356,7 @@ def csv_of(table):
 
 
 def _text_of(cell):
-    """A word, or a number; nothing where there is none."""
+    """Text of a cell: a word or a number, empty for NaN."""
     if isinstance(cell, str):
         return cell
     return "" if np.isnan(cell) else repr(float(cell))

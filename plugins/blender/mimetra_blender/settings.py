@@ -1,4 +1,4 @@
-"""What the panel's fields hold, in the scene."""
+"""Values of the panel's fields, stored in the scene."""
 
 import bpy
 
@@ -6,12 +6,12 @@ from . import classes, properties
 
 
 def of(scene, operation):
-    """The settings of an operation."""
+    """Settings of an operation."""
     return getattr(scene.mimetra, properties.property_name(operation.name))
 
 
 def copy(settings, operation, operator):
-    """Hands an operator what was set."""
+    """Copies the values that the user set to an operator."""
     switches = {}
     for parameter in properties.parameters_of(operation):
         if properties.is_optional_number(parameter):
@@ -30,7 +30,7 @@ def copy(settings, operation, operator):
 
 
 def register(operation):
-    """The class of an operation's settings."""
+    """Registers and returns the class of an operation's settings."""
     group = type(f"MimetraSettings_{properties.property_name(operation.name)}",
                  (bpy.types.PropertyGroup,),
                  {"__annotations__": properties.annotations_of(operation, pointers=True)})
@@ -39,7 +39,7 @@ def register(operation):
 
 
 def register_all(groups):
-    """The settings of all operations, by the classes of their own."""
+    """Registers the settings of all operations; `groups` are their classes."""
     fields = {properties.property_name(name): bpy.props.PointerProperty(type=group)
               for name, group in groups.items()}
     root = type("MimetraSettings", (bpy.types.PropertyGroup,), {"__annotations__": fields})

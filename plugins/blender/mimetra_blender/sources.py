@@ -1,4 +1,4 @@
-"""Blender's objects as values of the toolkit."""
+"""Values of the toolkit from Blender's objects."""
 
 import contextlib
 import logging
@@ -7,21 +7,21 @@ import numpy as np
 
 from . import mimetra
 
-# Modifiers that change which vertices there are. They are left out, so that results fit the mesh.
+# Modifiers that add or remove vertices. They are switched off, so that results fit the mesh.
 _REBUILDING = {"ARRAY", "BEVEL", "BOOLEAN", "BUILD", "DECIMATE", "EDGE_SPLIT", "MASK", "MIRROR",
                "MULTIRES", "REMESH", "SCREW", "SKIN", "SOLIDIFY", "SUBSURF", "VOLUME_TO_MESH",
                "WELD", "WIREFRAME"}
 
 
 def coordinates(points):
-    """N x 3 of vertices or of a shape key's points, in single precision as Blender has them."""
+    """Coordinates (N x 3) of vertices or of a shape key's points, in Blender's single precision."""
     values = np.empty(3 * len(points), np.float32)
     points.foreach_get("co", values)
     return values.reshape(-1, 3)
 
 
 def faces_of(mesh):
-    """A mesh's polygons."""
+    """Polygons of a mesh."""
     sizes = np.empty(len(mesh.polygons), np.int32)
     corners = np.empty(len(mesh.loops), np.int32)
     mesh.polygons.foreach_get("loop_total", sizes)
@@ -32,14 +32,14 @@ def faces_of(mesh):
 
 
 def rest_of(mesh):
-    """The mesh as it is without shape keys and modifiers."""
+    """Coordinates of a mesh without shape keys and modifiers."""
     keys = mesh.shape_keys
     return coordinates(keys.reference_key.data if keys else mesh.vertices)
 
 
 def _is_bound(modifier):
-    """True where a modifier moves nothing but the vertices that it was bound to, or that its file
-    holds."""
+    """Returns whether a modifier moves only the vertices that it was bound to, or that its file
+    contains."""
     if modifier.type == "MESH_CACHE":
         return True
     bound = getattr(modifier, "is_bound", False) or getattr(modifier, "is_bind", False)
@@ -47,7 +47,7 @@ def _is_bound(modifier):
 
 
 def _warn_of_bound(subject, hidden):
-    """Warns of modifiers that move the vertices of hidden ones, which are missing to them."""
+    """Warns of modifiers that are bound to vertices which hidden modifiers would make."""
     rebuilding = None
     for modifier in subject.modifiers:
         if modifier in hidden:
@@ -62,7 +62,7 @@ def _warn_of_bound(subject, hidden):
 
 @contextlib.contextmanager
 def _own_vertices(subject):
-    """Modifiers that rebuild the mesh are off as long as the block lasts."""
+    """Switches off modifiers that rebuild the mesh while the block runs."""
     hidden = [each for each in subject.modifiers
               if each.type in _REBUILDING and each.show_viewport]
     _warn_of_bound(subject, hidden)
@@ -76,7 +76,7 @@ def _own_vertices(subject):
 
 
 def _pose(context, subject, frame):
-    """The object's vertices at a frame."""
+    """Coordinates of an object's vertices at a frame."""
     context.scene.frame_set(frame)
     evaluated = subject.evaluated_get(context.evaluated_depsgraph_get())
     if not evaluated.is_evaluated:
@@ -95,8 +95,8 @@ def _pose(context, subject, frame):
 
 
 def sequence(context, subject, frames, *, groups=()):
-    """Yields the share done; returns an object's poses at frames as it is evaluated, with the
-    weights of the vertex groups of these names as fields."""
+    """Yields the share done. Returns an object's evaluated poses at frames, with the weights of the
+    vertex groups `groups` as fields."""
     scene = context.scene
     if subject.show_only_shape_key and subject.data.shape_keys:
         raise mimetra.BadInput(f"{subject.name}: shows only the shape key"
@@ -118,7 +118,7 @@ def sequence(context, subject, frames, *, groups=()):
 
 
 def _group_weights(subject, names):
-    """The weights of vertex groups by their names, 0 outside."""
+    """Weights of vertex groups by their names, 0 outside."""
     if not names:
         return {}
     groups = {group.index: group.name for group in subject.vertex_groups if group.name in names}
@@ -131,7 +131,7 @@ def _group_weights(subject, names):
 
 
 def _displacement(subject, key):
-    """What a shape key adds at value 1."""
+    """Displacement that a shape key adds at value 1."""
     moved = coordinates(key.data).astype(float) - coordinates(key.relative_key.data)
     if key.vertex_group in subject.vertex_groups:
         moved *= _group_weights(subject, [key.vertex_group])[key.vertex_group][:, None]
@@ -139,7 +139,7 @@ def _displacement(subject, key):
 
 
 def expression_keys(subject):
-    """The shape keys that can move an object."""
+    """Shape keys that can move an object."""
     keys = subject.data.shape_keys
     if not keys:
         return []
@@ -149,7 +149,7 @@ def expression_keys(subject):
 
 
 def model(subject):
-    """An object at rest with its shape keys as expressions."""
+    """Model of an object at rest, with its shape keys as expressions."""
     keys = expression_keys(subject)
     shapes = np.stack([_displacement(subject, key) for key in keys]) if keys else None
     return mimetra.Model(rest_of(subject.data), faces_of(subject.data), shapes,
@@ -157,7 +157,7 @@ def model(subject):
 
 
 def regions(subject, prefix):
-    """Vertex groups whose names begin with a prefix."""
+    """Regions from the vertex groups whose names begin with a prefix."""
     names = [group.name for group in subject.vertex_groups if group.name.startswith(prefix)]
     if not names:
         raise mimetra.BadInput(f"{subject.name}: no vertex group begins with '{prefix}', and there"

@@ -1,5 +1,5 @@
-// Writes the server manager XML of the plugin: what ParaView's menus, panels and Python know of the
-// sources and filters, made of the operations table.
+// Writes the server manager XML of the plugin from the operations table: what ParaView's menus,
+// panels and Python show of the sources and filters.
 
 #include <fstream>
 #include <iostream>
@@ -18,7 +18,7 @@ const std::string kTimes =
     "      <DoubleVectorProperty name=\"TimestepValues\" repeatable=\"1\" information_only=\"1\">\n"
     "        <TimeStepsInformationHelper/>\n      </DoubleVectorProperty>\n";
 
-/// "npy off": the formats that ParaView has no reader of its own for.
+/// Extensions of the formats that ParaView cannot read itself, as in "npy off".
 std::string file_extensions(const OperationTable& table) {
   const std::set<std::string> own = {".obj", ".ply", ".stl"};
   std::string words;
@@ -48,7 +48,8 @@ Proxy sequence_proxy(const OperationTable& table, const std::string& name, const
           hints + "<DefaultFileNameProperty name=\"FileName\"/>"};
 }
 
-/// One proxy for the menu of sources and one for File > Open: ParaView leaves readers out of menus.
+/// One proxy for the menu of sources and one for File > Open, because ParaView leaves readers out
+/// of menus.
 std::string sequence_proxies(const OperationTable& table) {
   return proxy_xml(sequence_proxy(table, "MimetraSequence", "mimetra Sequence",
                                   "<ShowInMenu category=\"mimetra\"/>")) +

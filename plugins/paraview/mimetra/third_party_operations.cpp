@@ -20,7 +20,7 @@ std::string name_in_python(std::string label) {
   return label;
 }
 
-/// The filters of all plugins, as ParaView knows a plugin of its own.
+/// A ParaView plugin with the filters of all mimetra plugins.
 class ThirdPartyOperations : public vtkPVPlugin, public vtkPVServerManagerPluginInterface {
  public:
   explicit ThirdPartyOperations(std::string xml) : xml_(std::move(xml)) {}
@@ -47,7 +47,7 @@ class ThirdPartyOperations : public vtkPVPlugin, public vtkPVServerManagerPlugin
 void add_third_party_operations() {
   OperationTable table;
   add_toolkit(table);
-  // Those of the toolkit are in the XML that was written with the plugin.
+  // The toolkit's filters are in the XML that was written with the plugin.
   const std::size_t own = filter_proxies(table).size();
   for (const std::string& problem : add_plugins(table, plugin_folders())) {
     vtkGenericWarningMacro(<< problem);
@@ -64,7 +64,7 @@ void add_third_party_operations() {
     }
   }
   if (xml.empty()) return;
-  // ParaView keeps a pointer to it to its end.
+  // ParaView keeps a pointer to the plugin until it exits.
   static ThirdPartyOperations plugin(
       "<ServerManagerConfiguration>\n  <ProxyGroup name=\"filters\">\n" + xml +
       "  </ProxyGroup>\n</ServerManagerConfiguration>\n");

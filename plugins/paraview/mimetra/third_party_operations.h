@@ -1,5 +1,5 @@
 #pragma once
 
-/// Adds to ParaView the operations of mimetra's plugins, which it knows only when it runs: those
-/// that begin with a mesh over time, as filters in the menu mimetra.
+/// Adds the operations of mimetra's plugins to ParaView, which knows them only at run time.
+/// Operations that begin with a mesh over time become filters in the menu mimetra.
 void add_third_party_operations();

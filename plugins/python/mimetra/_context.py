@@ -30,7 +30,7 @@ def _log(level, text, _):
 
 
 def in_python(message):
-    """A message with options as functions take them."""
+    """Message with options spelled as functions take them."""
     def spelled(option):
         return "force" if option[1] == "overwrite" else option[1].replace("-", "_")
     return re.sub("option '([a-z-]+)'", spelled, message)
@@ -49,7 +49,7 @@ class Context:
         _all_contexts.add(self)
 
     def check(self, status):
-        """Raises the exception of a status."""
+        """Raises the exception for a status other than 0."""
         if status:
             raise error_of(status, in_python(library.message(self.handle).decode(errors="replace")))
 
@@ -61,8 +61,8 @@ class Context:
 
     @contextlib.contextmanager
     def watched(self, progress=None, threads=None):
-        """Calls `progress(share)`, which may answer False to cancel, as long as the block lasts.
-        What it raises cancels too and is raised at the end, as is the user's Ctrl-C."""
+        """Calls `progress(share)` while the block runs; False as its answer cancels. An exception
+        from `progress` cancels too and is raised at the end, like the user's Ctrl-C."""
         raised = []
 
         @c.Progress
@@ -94,7 +94,7 @@ class Context:
 
 @contextlib.contextmanager
 def _interrupts_kept(raised):
-    """Keeps KeyboardInterrupt in a list, since nothing may be raised into the library."""
+    """Stores KeyboardInterrupt in a list, because no exception may pass through the library."""
     if (threading.current_thread() is not threading.main_thread()
             or signal.getsignal(signal.SIGINT) is not signal.default_int_handler):
         yield
@@ -108,8 +108,8 @@ def _interrupts_kept(raised):
 
 @atexit.register
 def _end_runs():
-    """Cancels the runs of daemon threads, and begins no more: they would report to an interpreter
-    that is gone. One that waits in its own `progress` is left there."""
+    """Cancels the runs of daemon threads, and prevents new ones, because the interpreter would be
+    gone when they report. Does not stop a thread that waits in its own `progress`."""
     others = [each for each in list(_all_contexts)
               if each is not getattr(_contexts, "own", None)]
     for each in others:
@@ -120,7 +120,7 @@ def _end_runs():
 
 
 def context():
-    """The context of this thread. The first one names plugins that cannot be used."""
+    """Context of this thread. The first one logs the plugins that cannot be used."""
     if not hasattr(_contexts, "own"):
         _contexts.silent = _first.locked()
         _first.acquire(blocking=False)

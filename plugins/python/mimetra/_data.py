@@ -14,7 +14,7 @@ from ._errors import UsageError
 
 _DTYPES = {c.F64: np.float64, c.F32: np.float32, c.I32: np.int32, c.U8: np.uint8}
 
-# Arrays that are not of floating-point numbers.
+# Types of arrays that do not contain floating-point numbers.
 _KNOWN = {"face_sizes": c.I32, "corners": c.I32, "triangles": c.I32, "centers": c.I32,
           "landmarks": c.I32, "masks": c.U8, "pixels": c.U8, "expression_names": c.STRING,
           "identity_names": c.STRING, "weight_names": c.STRING, "names": c.STRING,
@@ -130,9 +130,9 @@ class Data:
             own.check(library.data_arrays(own.handle, self._handle, ctypes.byref(arrays)))
             shown = {}
             for each in c.listed(arrays):
-                # Of two fields of one name the first.
+                # The first of two fields with the same name counts.
                 shown.setdefault(each.contents.name.decode(), each.contents)
-            self._shown = shown  # at once: other threads may look
+            self._shown = shown  # set at once, because other threads may read it
         return self._shown
 
     def __getitem__(self, name):
@@ -274,7 +274,7 @@ class Pictures(Data):
         self._make(name, {"pixels": pixels})
 
     def _repr_png_(self):
-        """The picture as a notebook shows it; of several the first."""
+        """PNG for notebooks; the first one of several pictures."""
         return _png(self[next(iter(self))])
 
 
@@ -291,9 +291,9 @@ CLASSES = {each.kind: each for each in Data.__subclasses__()}
 
 
 def _png(pixels):
-    """A PNG file of pixels, height x width x 3."""
+    """PNG file of pixels, height x width x 3."""
     height, width, _ = pixels.shape
-    rows = np.zeros((height, 1 + 3 * width), np.uint8)  # each begins with its filter: none
+    rows = np.zeros((height, 1 + 3 * width), np.uint8)  # each row begins with its filter type: none
     rows[:, 1:] = pixels.reshape(height, -1)
 
     def chunk(name, content):
@@ -306,12 +306,12 @@ def _png(pixels):
 
 
 def of_handle(handle):
-    """A value that the library made, in the class of its kind."""
+    """Value of the library, in the class of its kind."""
     return CLASSES[library.data_kind(handle)]._of_handle(handle)
 
 
 class _View:
-    """What NumPy asks for memory, and keeps as long as it uses it."""
+    """Gives NumPy the memory of a value, and keeps the value alive while NumPy uses it."""
 
     def __init__(self, data, address, shape, dtype):
         self.data = data
@@ -320,14 +320,14 @@ class _View:
 
 
 class _Field(NamedTuple):
-    """A field's values, and what they stand on."""
+    """Values of a field, and their location."""
 
     values: object
     location: int
 
 
 def _faces(faces):
-    """The arrays of faces however they are given."""
+    """Arrays of faces, from any accepted form."""
     if isinstance(faces, Faces):
         return {"face_sizes": faces.sizes, "corners": faces.corners}
     if isinstance(faces, np.ndarray) and faces.ndim == 2 and faces.shape[1] == 3:
@@ -364,7 +364,7 @@ def _floats(array, name):
 
 
 def _unmasked(values):
-    """An array, with NaN for what a masked one hides."""
+    """Array with NaN for masked values."""
     if isinstance(values, (list, tuple)) and any(map(np.ma.isMaskedArray, values)):
         values = np.ma.array(values)
     if np.ma.is_masked(values):
@@ -373,7 +373,7 @@ def _unmasked(values):
 
 
 def _taken(values, type, name):
-    """An array that the library takes, and the number of its type."""
+    """Array that the library accepts, and the number of its type."""
     if type in (c.I32, c.U8) and np.ma.is_masked(values):
         raise UsageError(f"array '{name}': is masked, and whole numbers have nothing for what is"
                          " hidden; give all of it")
@@ -389,7 +389,7 @@ def _taken(values, type, name):
 
 
 def _described(name, values, type):
-    """A struct that shows an array to the library, and what must live as long."""
+    """Struct that describes an array to the library, and the memory that must live as long."""
     shown = c.Array(name=name.encode(), type=type)
     if isinstance(values, _Field):
         shown.location = values.location
@@ -409,7 +409,7 @@ def _described(name, values, type):
 
 
 def _given(arrays, types):
-    """The list of arrays that the library takes, and what must live as long."""
+    """List of arrays for the library, and the memory that must live as long."""
     described = [_described(name, values, types.get(name, c.F64))
                  for name, values in arrays if values is not None]
     pointers = [ctypes.pointer(shown) for shown, _ in described]
@@ -418,7 +418,7 @@ def _given(arrays, types):
 
 
 def text_of(value):
-    """A parameter's value as the command writes it."""
+    """Value of a parameter, as the command writes it."""
     if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, (list, tuple, range, np.ndarray)):

@@ -1,4 +1,4 @@
-"""Errors in the library's own words, one class for each status code of mimetra.h."""
+"""Errors with the library's messages, one class for each status code of mimetra.h."""
 
 
 class Error(Exception):
@@ -38,6 +38,6 @@ class Cancelled(Error):
 
 
 def error_of(status, message):
-    """The exception for a status other than 0."""
+    """Exception for a status other than 0."""
     classes = (UsageError, BadInput, Mismatch, OutputError, Cancelled)
     return next((each for each in classes if each.status == status), Error)(message)

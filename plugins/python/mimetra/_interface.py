@@ -1,4 +1,4 @@
-"""mimetra.h in ctypes: its structs, its table of functions, and where the library is."""
+"""The structs and functions of mimetra.h in ctypes, and the search for the library."""
 
 import ctypes
 import os
@@ -70,7 +70,7 @@ def _function(result, *arguments):
 
 
 class Interface(ctypes.Structure):
-    """The table; the functions for operations that are written in C are not called from here."""
+    """Table of functions. This module does not call the functions for operations written in C."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -114,7 +114,7 @@ class Interface(ctypes.Structure):
 
 
 def listed(pointers):
-    """The entries of a list that ends with NULL; none for NULL."""
+    """Entries of a list that ends with NULL; none for NULL."""
     entries = []
     while pointers and pointers[len(entries)]:
         entries.append(pointers[len(entries)])
@@ -122,26 +122,26 @@ def listed(pointers):
 
 
 def free_with(owner, free, handle):
-    """Frees a handle when its owner goes, but not when the interpreter ends: until the process
-    does, arrays may look at a value and threads be inside a context."""
+    """Frees a handle when its owner is deleted, but not when the interpreter ends. Until the
+    process ends, arrays may view a value, and threads may be inside a context."""
     weakref.finalize(owner, free, handle).atexit = False
 
 
-# The one that draws is taken where it is there and finds VTK; Blender draws itself.
+# The library that draws is preferred if it exists and finds VTK. Blender draws by itself.
 _NAMES = ("libmimetra_pictures.so", "libmimetra_c.so")
 if "bpy" in sys.modules:
     _NAMES = _NAMES[1:]
 
 
 def _places():
-    """Where a library may be, the first one first: as the environment says, beside this module, in
-    its installation, in the system."""
+    """Paths to try, in order: as the environment says, beside this module, in its installation, in
+    the system."""
     named = os.environ.get("MIMETRA_LIBRARY")
     if named:
         return [named]
     here = pathlib.Path(__file__).resolve().parent
     places = [here / name for name in _NAMES]
-    # Of the system's library the loader takes the build for the processor, if it is not given a path.
+    # Without a path, the loader takes the build of the system's library for the processor.
     installed = [] if here.is_relative_to("/usr/lib") else here.parents[:4]
     for name in _NAMES:
         for folder in installed:
@@ -151,7 +151,7 @@ def _places():
 
 
 def _loaded():
-    """The first library that can be loaded, and its place."""
+    """First library that can be loaded, and its path."""
     for place in _places():
         try:
             return ctypes.CDLL(place), place
@@ -161,7 +161,7 @@ def _loaded():
 
 
 def load():
-    """The table of functions. Throws ImportError where there is no library, or one too old."""
+    """Table of functions. Throws ImportError if there is no library, or if it is too old."""
     library, place = _loaded()
     library.mimetra_get_interface.restype = POINTER(Interface)
     library.mimetra_get_interface.argtypes = [c_uint32]

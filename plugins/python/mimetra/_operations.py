@@ -20,7 +20,7 @@ _KINDS = {c.FLAG: "flag", c.INTEGER: "integer", c.INTEGER_LIST: "list of integer
           c.NUMBER: "number", c.LENGTH: "length", c.CHOICE: "choice", c.TEXT: "text",
           c.FILE: "path"}
 
-# What a result has besides outputs, and a function besides what the table says.
+# Names that results have besides outputs, and functions besides the table's names.
 _RESERVED = ("report", "summary", "manifest", "force")
 
 
@@ -34,7 +34,7 @@ class Input:
         self.optional = bool(port.flags & c.OPTIONAL)
         self.repeated = bool(port.flags & c.REPEATED)
         self.named = bool(port.flags & c.NAMED)
-        #: True for a sequence whose fields matter.
+        #: True for a sequence whose fields the operation uses.
         self.fields = bool(port.flags & c.WITH_FIELDS)
 
 
@@ -63,7 +63,7 @@ class Parameter:
                            if described.kind == c.CHOICE else _ANNOTATIONS[described.kind])
 
     def described(self):
-        """Its line of a docstring."""
+        """Line about the parameter in a docstring."""
         notes = [self.help]
         if self.choices:
             also = " or a path" if self.kind == "path" else ""
@@ -87,7 +87,7 @@ class Operation:
         self.outputs = [Output(each.contents) for each in c.listed(described.outputs)]
         parameters = [each.contents for each in c.listed(described.parameters)]
         self.parameters = [Parameter(each) for each in parameters if each.of_files != c.WRITING]
-        #: Those of writing its outputs to files.
+        #: Parameters of writing the outputs to files.
         self.writing = [Parameter(each) for each in parameters if each.of_files == c.WRITING]
 
 
@@ -96,13 +96,13 @@ class Result(types.SimpleNamespace):
 
 
 def function_name(name):
-    """An operation's name in Python."""
+    """Python name of an operation."""
     made = name.replace("-", "_")
     return made + "_" if keyword.iskeyword(made) else made
 
 
 def python_name(name):
-    """An input's, output's or parameter's name in Python."""
+    """Python name of an input, output or parameter."""
     made = function_name(name)
     return made + "_" if made in _RESERVED else made
 
@@ -118,12 +118,12 @@ def _range(minimum, maximum):
 
 
 def _end(number):
-    """The end of a range, whole numbers without a point."""
+    """Text of the end of a range; whole numbers have no decimal point."""
     return str(int(number) if number == int(number) else number)
 
 
 def _value(kind, fallback):
-    """A default in Python."""
+    """Default as a Python value."""
     if fallback is None:
         return None
     text = fallback.decode()
@@ -167,7 +167,7 @@ class _Call:
         self.own.check(library.call_give(self.handle, name, value._handle))
 
     def ask(self, name, wish, force):
-        """Asks for an output, or for the manifest (None): True for a value, a path for its files."""
+        """Requests an output, or the manifest (`name` None): True for a value, a path for files."""
         if isinstance(wish, (str, os.PathLike)) and os.fspath(wish):
             path = os.fspath(wish).encode()
             self.own.check(library.call_write(self.handle, name, path, bool(force)))
@@ -183,7 +183,7 @@ class _Call:
         return of_handle(handle)
 
     def outputs(self, port, many):
-        """The values of an output; the only one where no list was given."""
+        """Values of an output, or a single value if no list was given."""
         name = port.name.encode()
         count = library.call_output_count(self.handle, name)
         values = [self.output(name, index) for index in range(count)]
@@ -193,7 +193,7 @@ class _Call:
 
 
 def _run(operation, given, *, progress, threads):
-    """Runs an operation with values by their names in Python."""
+    """Runs an operation with values by their Python names."""
     own = context()
     many = False
     with _Call(own, operation.name) as call, own.watched(progress, threads):
@@ -227,7 +227,7 @@ def _input_annotation(port):
 
 
 def _signature(operation):
-    """Needed inputs in order, all else by name."""
+    """Signature with required inputs in order, and everything else by name."""
     Slot = inspect.Parameter
     slots = []
     for port in operation.inputs:
@@ -254,7 +254,7 @@ def _signature(operation):
 
 
 def _suggestion(options, signature):
-    """"; did you mean 'k'?" for the first option that there is not, or nothing."""
+    """"; did you mean 'k'?" for the first unknown option, or nothing."""
     known = {name.lower(): name for name in signature.parameters}
     unknown = next((name for name in options if name not in signature.parameters), "")
     near = difflib.get_close_matches(unknown.lower(), known, n=1)
@@ -279,7 +279,7 @@ def _docstring(operation):
 
 
 def function_of(operation):
-    """The Python function of an operation."""
+    """Python function of an operation."""
     signature = _signature(operation)
 
     def function(*arguments, **options):
@@ -301,7 +301,7 @@ def function_of(operation):
 
 
 def all_operations():
-    """The operations of the table, by name."""
+    """Operations of the table, by name."""
     return {described.name.decode(): Operation(described) for described in context().operations()}
 
 
@@ -320,5 +320,5 @@ class Format:
 
 
 def all_formats():
-    """The formats of the table, in its order."""
+    """Formats of the table, in its order."""
     return [Format(described) for described in context().formats()]

@@ -75,7 +75,8 @@ def _slots(signature):
 
 
 def _value_class(made):
-    """A value's constructor: names are text, faces anything with polygons, all else arrays."""
+    """Constructor of a value class: names are text, faces anything with polygons, all else
+    arrays."""
     lines = [f"class {made.__name__}(Data):"]
     if "__init__" not in vars(made):
         return lines + ["    ..."]
@@ -99,7 +100,7 @@ def _error_class(made):
 
 
 def text():
-    """The stub as text."""
+    """Text of the stub."""
     lines = [_HEAD]
     for made in mimetra.Data.__subclasses__():
         lines += [*_value_class(made), ""]

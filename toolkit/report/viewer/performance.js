@@ -1,11 +1,11 @@
-// What a report holds of a performance, unpacked: the layout is written by viewer_data.cpp.
+// Unpacks the performance in a report. viewer_data.cpp writes the layout.
 import { unzlibSync } from 'fflate';
 
 function unpackBytes(text) {
   return unzlibSync(Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)));
 }
 
-// Rows of `width` numbers of 16 bits, low bytes of a row before its high ones.
+// Rows of `width` 16-bit numbers. The low bytes of a row come before its high bytes.
 function unpackRows(text, width) {
   const bytes = unpackBytes(text);
   const numbers = new Int16Array(bytes.length / 2);
@@ -17,7 +17,7 @@ function unpackRows(text, width) {
   return numbers;
 }
 
-// The same, of which each row is the difference from the one before.
+// Rows as in unpackRows(), each stored as the difference from the row before.
 function unpackDifferences(text, width) {
   const numbers = unpackRows(text, width);
   for (let i = width; i < numbers.length; ++i) numbers[i] += numbers[i - width];
@@ -31,7 +31,7 @@ function unpackIndices(text) {
   return indices;
 }
 
-// Frames that are whole: the first pose is the one at rest.
+// Frames stored as whole poses; the first one is the rest pose.
 class WholePoses {
   constructor(packed, width) {
     this.width = width;
@@ -40,7 +40,7 @@ class WholePoses {
     this.rest = Float32Array.from(this.poses.subarray(0, width), (steps) => this.step * steps);
   }
 
-  // Positions between frame `first` and the next one, into the beginning of `out`.
+  // Writes the positions between frame `first` and the next one to the beginning of `out`.
   mix(first, share, out) {
     const from = (first + 1) * this.width;
     const to = share > 0 ? from + this.width : from;
@@ -50,7 +50,7 @@ class WholePoses {
   }
 }
 
-// Frames that are mixtures of few poses, and what some of their coordinates need besides.
+// Frames stored as mixtures of a few poses, with corrections of some coordinates.
 class MixedPoses {
   constructor(packed, width) {
     this.width = width;
@@ -63,7 +63,7 @@ class MixedPoses {
     this.corrections = unpackIndices(packed.corrections);
     this.rest = Float32Array.from(unpackRows(packed.rest, width),
       (steps) => (this.step * steps) / packed.stepsOfRest);
-    // The first correction of each frame.
+    // Index of the first correction of each frame.
     this.starts = [0];
     for (let i = 0; i < this.places.length; ++i) {
       while (this.places[i] >= this.starts.length * width) this.starts.push(i);

@@ -1,4 +1,4 @@
-// One mesh of a performance on the screen: its positions, normals and colours at any time.
+// A mesh of a performance on the screen: its positions, normals and colours at any time.
 import vtkActor from '@kitware/vtk.js/Rendering/Core/Actor';
 import vtkDataArray from '@kitware/vtk.js/Common/Core/DataArray';
 import vtkLight from '@kitware/vtk.js/Rendering/Core/Light';
@@ -6,7 +6,7 @@ import vtkMapper from '@kitware/vtk.js/Rendering/Core/Mapper';
 import vtkPolyData from '@kitware/vtk.js/Common/DataModel/PolyData';
 import vtkRenderer from '@kitware/vtk.js/Rendering/Core/Renderer';
 
-// The light of the still pictures: a key light from the upper left, a weak one opposite, and one
+// Lights as in the still pictures: a key light from the upper left, a weak one opposite, and one
 // from above.
 const lights = [
   { position: [-0.6, 0.7, 1.2], intensity: 0.62 },
@@ -14,10 +14,11 @@ const lights = [
   { position: [0, 1.5, 0.3], intensity: 0.2 },
 ];
 
-// What is drawn: triangles within one region, and around each corner of the others the part nearest
-// to it, so that colours do not run into each other. Edges within a region stay whole, as the
-// triangle beyond them has them: the background would shine through. `between` holds the vertices in whose middle
-// each added point is, `cells` VTK's list, and of each cell `triangles` and `regions`.
+// Cells to draw. A triangle with corners in several regions is split into the parts nearest to each
+// corner, so that colours do not run into each other. Edges within a region stay whole, as in the
+// triangle beyond them, or the background would shine through. `between` lists the vertices whose
+// middle is each added point, `cells` is VTK's list, and `triangles` and `regions` have one entry a
+// cell.
 function cellsOf({ vertices, triangles, regions }) {
   const between = [], cells = [], ofTriangle = [], ofRegion = [];
   const add = (corners) => vertices + between.push(corners) - 1;
@@ -97,7 +98,7 @@ export class Surface {
     this.renderer.addActor(actor);
   }
 
-  // What is at a point of a triangle, in words.
+  // Names the mesh, the region and the nearest vertex at a point of a cell.
   nameOf(cell, point) {
     if (cell < 0) return '';
     const triangle = this.drawn.triangles[cell];
@@ -108,7 +109,7 @@ export class Surface {
     return `${this.mesh.role}: ${region < 0 ? 'no region' : `region ${region}`}, vertex ${nearest}`;
   }
 
-  // Between frame `first` and the next one.
+  // Shows the pose between frame `first` and the next one.
   show(first, share, coloring) {
     const coordinates = 3 * this.mesh.surface.vertices;
     this.mesh.poses.mix(first, share, this.positions);
@@ -121,7 +122,7 @@ export class Surface {
     this.data.modified();
   }
 
-  // The point in the middle of others.
+  // Puts an added point into the middle of its vertices.
   put(corners, at) {
     const n = this.normals;
     for (let axis = 0; axis < 3; ++axis) {
@@ -139,7 +140,7 @@ export class Surface {
     for (let axis = 0; axis < 3; ++axis) n[at + axis] /= length;
   }
 
-  // By area; vertices at one place share theirs.
+  // Computes normals weighted by area. Vertices at the same place share a normal.
   updateNormals() {
     const { triangles, places } = this.mesh.surface;
     const p = this.positions;
@@ -156,7 +157,7 @@ export class Surface {
         n[v + 2] += z;
       }
     }
-    // A vertex comes after the one that it shares its place with, or is that one.
+    // places[v] <= v, so a shared normal has unit length before it is copied.
     for (let v = 0; v < places.length; ++v) {
       const place = 3 * places[v];
       const length = place === 3 * v ? Math.hypot(n[place], n[place + 1], n[place + 2]) || 1 : 1;

@@ -1,4 +1,4 @@
-// The player of a report: source and target side by side, under one camera.
+// Player of a report: source and target side by side, under one camera.
 import '@kitware/vtk.js/Rendering/OpenGL/Profiles/Geometry';
 import vtkCamera from '@kitware/vtk.js/Rendering/Core/Camera';
 import vtkCellPicker from '@kitware/vtk.js/Rendering/Core/CellPicker';
@@ -13,7 +13,7 @@ import { Surface } from './surface.js';
 
 const element = (id) => document.getElementById(id);
 
-// Turns and zooms, without vtk.js's commands by keys; the player sets the clipping range.
+// Rotates and zooms, without the keyboard commands of vtk.js. The player sets the clipping range.
 const newStyle = macro.newInstance((publicAPI, model) => {
   vtkInteractorStyleTrackballCamera.extend(publicAPI, model, { autoAdjustCameraClippingRange: 0 });
   publicAPI.handleKeyPress = () => {};
@@ -37,7 +37,8 @@ class Player {
   }
 
   createWindow(stage) {
-    // The wheel scrolls the page; with a key it zooms. Listeners of vtk.js are on the inner element.
+    // The wheel scrolls the page, and zooms with Ctrl or Shift. vtk.js listens on the inner
+    // element.
     stage.addEventListener('wheel', (event) => {
       if (!event.ctrlKey && !event.shiftKey) event.stopImmediatePropagation();
     }, { capture: true, passive: true });
@@ -72,7 +73,7 @@ class Player {
       element('legend').hidden = this.coloring !== 'regions';
       this.draw();
     });
-    // There is nothing to choose from where there is one mesh.
+    // A report of one mesh has no choice of meshes.
     element('shown')?.addEventListener('change', (event) => {
       const name = event.target.value;
       this.shown = this.surfaces.filter(({ mesh }) => name === 'all' || mesh.role === name);
@@ -85,7 +86,7 @@ class Player {
     });
   }
 
-  // A box of each region's colour.
+  // Shows a box in the colour of each region.
   showLegend() {
     const there = new Set(this.surfaces.flatMap(({ regions }) => [...regions]));
     const entries = this.performance.regionColors.map((color, region) => {
@@ -99,7 +100,7 @@ class Player {
     element('legend').replaceChildren('region', ...entries);
   }
 
-  // A click, which is no turn, names what it hits.
+  // Names what a click hits. Ignores drags, which rotate the meshes.
   connectPicking(stage) {
     const picker = vtkCellPicker.newInstance({ tolerance: 0 });
     let pressed = null;
@@ -125,26 +126,26 @@ class Player {
     this.camera.setFocalPoint(0, 0, 0);
     this.camera.setPosition(...towardsEye.map((x) => x * distance));
     this.camera.setViewUp(...up);
-    // Holds all meshes at all times, from all sides.
+    // The range contains all meshes at all times, from all sides.
     this.camera.setClippingRange(distance - 1.1 * reach, distance + 1.1 * reach);
     this.fittedScale = this.fittingScale();
     this.camera.setParallelScale(this.fittedScale);
   }
 
-  // Half the height at which all of a mesh is seen.
+  // Half the height of a view that shows a whole mesh.
   fittingScale() {
     const { halfWidth, halfHeight } = this.performance.view;
     return Math.max(halfHeight, halfWidth / this.aspect());
   }
 
-  // Keeps what the user zoomed to while the window changes its shape.
+  // Keeps the user's zoom when the window changes its shape.
   fit() {
     const zoom = this.camera.getParallelScale() / this.fittedScale;
     this.fittedScale = this.fittingScale();
     this.camera.setParallelScale(this.fittedScale * zoom);
   }
 
-  // Width by height of what one mesh has.
+  // Width divided by height of the view of one mesh.
   aspect() {
     const { clientWidth, clientHeight } = element('stage');
     return clientWidth / this.shown.length / clientHeight;

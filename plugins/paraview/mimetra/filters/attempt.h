@@ -1,4 +1,4 @@
 #pragma once
 
-/// How what a filter was asked for ended: what failed has been said, an abort needs no words.
+/// Outcome of an attempt. A failure has been shown to the user; an abort needs no message.
 enum class Attempt { done, aborted, failed };

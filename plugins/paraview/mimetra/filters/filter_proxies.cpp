@@ -37,13 +37,13 @@ const std::string kRunFile =
 const std::string kInMenu = "<ShowInMenu category=\"mimetra\"/>";
 const std::string kChart = "<View type=\"XYChartView\" port=\"1\"/>";
 
-/// What comes in first.
+/// Property of the first input port.
 constexpr const char* kInput = "Input";
 
-/// ParaView saves what it shows by a menu of its own.
+/// ParaView has a menu of its own to save data.
 const std::set<std::string> kLeftOut = {"convert"};
 
-/// A filter with a class of its own; why it needs one stands there.
+/// A filter with a class of its own; the class says why it needs one.
 struct OwnFilter {
   std::string class_name;
   std::string label;
@@ -100,8 +100,8 @@ Proxy own_proxy(const Operation& operation, const OwnFilter& filter) {
           kInMenu + filter.hints};
 }
 
-/// What is shown at once of an operation with many parameters. Of others it is everything: they are
-/// what the operation is about.
+/// Parameters shown at once, for operations with many. Other operations show all of theirs, because
+/// the parameters are what the operation is about.
 const std::map<std::string, std::vector<std::string>>& first_of_many() {
   static const std::map<std::string, std::vector<std::string>> names = {
       {"evaluate", {"target", "k", "radius", "coverage"}}};
@@ -118,8 +118,8 @@ std::vector<std::string> shown_at_once(const Operation& operation) {
 }
 
 Proxy generic_proxy(const Operation& operation) {
-  // ParaView sets properties in the order of their names, capitals first; no parameter has the name
-  // or, in Python, the label.
+  // ParaView sets properties in the order of their names, capitals first, so this one is set first.
+  // No parameter has its name or, in Python, its label.
   const std::string which =
       "      <StringVectorProperty name=\"MimetraOperation\" command=\"SetOperation\""
       " number_of_elements=\"1\" panel_visibility=\"never\" default_values=\"" +
@@ -155,7 +155,7 @@ const Input* piped_input(const Operation& operation) {
 std::vector<std::string> mesh_inputs(const Operation& operation) {
   std::vector<std::string> names;
   for (const Input& input : operation.inputs) {
-    // Two ports of one name cannot be told apart: such a model is a file.
+    // Two ports cannot have the same name, so a model named "input" is read from a file.
     const bool has_port = input.kind == DataKind::model && label_of(input.name) != kInput;
     if (has_port && !input.optional) names.push_back(input.name);
   }

@@ -7,27 +7,28 @@
 
 namespace mimetra {
 
-/// The input that comes in at a filter's first port: the first one that the operation needs, where
-/// that is a sequence. Null for an operation that begins with something else.
+/// Input at a filter's first port: the first input that the operation needs, if it is a sequence.
+/// Null if the operation begins with something else.
 const Input* piped_input(const Operation& operation);
 
-/// Further inputs that the operation needs and that may come in as a mesh, one at each port after
-/// the first, or as a file: models.
+/// Names of the further models that the operation needs. Each comes in as a mesh at a port of its
+/// own, or as a file.
 std::vector<std::string> mesh_inputs(const Operation& operation);
 
-/// What a filter shows at one of its output ports.
+/// Content of an output port of a filter.
 struct ShownOutput {
   enum class Content { mesh, table, report };
 
   Content content = Content::report;
-  std::string output = {};  ///< the operation's name for it; none for the report
+  std::string output = {};  ///< name of the operation's output; empty for the report
 };
 
-/// What a filter shows, port after port: the first sequence that the operation makes, and
-/// its tables; the report of an operation that makes neither.
+/// Contents of a filter's ports: the first sequence that the operation makes, and its tables. If
+/// the operation makes neither, its report.
 std::vector<ShownOutput> shown_outputs(const Operation& operation);
 
-/// Filters of the operations that begin with a mesh over time, in the table's order.
+/// Filters for the operations that begin with a mesh over time (except convert), in the table's
+/// order.
 std::vector<Proxy> filter_proxies(const OperationTable& table);
 
 }  // namespace mimetra

@@ -19,7 +19,7 @@ using namespace mimetra;
 
 namespace {
 
-/// What ParaView's charts put on the x axis, and leave out of the curves.
+/// ParaView's charts put this column on the x axis and do not plot it as a curve.
 constexpr const char* kTime = "Time";
 
 void remove_normals(vtkDataSetAttributes& attributes) {
@@ -65,7 +65,7 @@ void make_mesh(vtkPolyData& mesh, const MeshSequence& sequence, const std::vecto
 void show_mesh(vtkPolyData& output, vtkPolyData& mesh, const MeshSequence& sequence, int frame) {
   output.ShallowCopy(&mesh);
   set_positions(output, sequence.frame(frame), Precision::double_precision);
-  // A field of that name is the operation's own.
+  // A field of that name comes from the operation.
   const bool has_one = output.GetPointData()->HasArray(kDisplacement) != 0;
   if (sequence.rest_is_known() && !has_one) {
     add_displacement(output, sequence.frame(frame) - sequence.rest());
@@ -82,7 +82,7 @@ void make_fields(vtkPolyData& holder, vtkPolyData& mesh, const std::vector<Field
 void share_fields(vtkPolyData& holder, vtkPolyData& output) {
   const auto share = [](vtkDataSetAttributes& from, vtkDataSetAttributes& to) {
     for (int i = 0; i < from.GetNumberOfArrays(); ++i) to.AddArray(from.GetAbstractArray(i));
-    // ParaView colours what it shows first by the active scalars.
+    // ParaView first colours a mesh by its active scalars.
     if (!to.GetScalars() && from.GetScalars()) to.SetActiveScalars(from.GetScalars()->GetName());
   };
   share(*holder.GetPointData(), *output.GetPointData());

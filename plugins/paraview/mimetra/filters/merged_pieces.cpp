@@ -24,7 +24,7 @@ using namespace mimetra;
 
 namespace {
 
-/// VTK numbers cells in this order.
+/// Cells in the order in which VTK numbers them.
 std::array<vtkCellArray*, 4> cell_arrays(vtkPolyData& mesh) {
   return {mesh.GetVerts(), mesh.GetLines(), mesh.GetPolys(), mesh.GetStrips()};
 }
@@ -47,7 +47,7 @@ std::string name_of(const Cell& cell) {
          std::to_string(cell.from.piece);
 }
 
-/// Throws MismatchError where cells use points that are not there.
+/// Throws MismatchError if cells use points that do not exist.
 void expect_valid(vtkPolyData& piece, std::size_t number) {
   for (vtkCellArray* cells : cell_arrays(piece)) {
     vtkNew<vtkIdList> corners;
@@ -65,7 +65,7 @@ void expect_valid(vtkPolyData& piece, std::size_t number) {
   }
 }
 
-/// Own cells, or the ghosts, of all pieces.
+/// Own cells, or ghost cells, of all pieces.
 std::vector<Cell> cells_of(const Pieces& pieces, const std::vector<Places>& points, bool ghosts) {
   std::vector<Cell> cells;
   for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
@@ -92,7 +92,7 @@ std::vector<Cell> cells_of(const Pieces& pieces, const std::vector<Places>& poin
   return cells;
 }
 
-/// Cells by what they are made of.
+/// Finds cells by their kind and points.
 class CellFinder {
  public:
   explicit CellFinder(const std::vector<Cell>& cells) : cells_(cells), order_(cells.size()) {
@@ -100,7 +100,7 @@ class CellFinder {
     std::ranges::stable_sort(order_, {}, [this](std::size_t i) { return key(cells_[i]); });
   }
 
-  /// The first of the cells with the points of this one, or none.
+  /// First cell with the points of this one, or none.
   std::optional<std::size_t> first_like(const Cell& cell) const {
     const auto found = std::ranges::lower_bound(order_, key(cell), {},
                                                 [this](std::size_t i) { return key(cells_[i]); });
@@ -123,8 +123,8 @@ bool all_have_cell_ids(const Pieces& pieces) {
   });
 }
 
-/// Throws MismatchError where a cell is another process's too: cells on purpose at one place cannot
-/// be told from copies. Vertices are not looked at: they lie on seams.
+/// Throws MismatchError if two processes have the same cell. It may be a copy or an intended
+/// duplicate. Skips vertex cells, which may be on seams.
 void expect_no_copies(const std::vector<Cell>& cells) {
   const CellFinder finder(cells);
   for (const Cell& cell : cells) {
@@ -136,8 +136,8 @@ void expect_no_copies(const std::vector<Cell>& cells) {
   }
 }
 
-/// In the order of ids; without ids of cells, in one that does not depend on the pieces where
-/// points have ids, else by pieces.
+/// Sorts cells by their ids. Without cell ids, sorts them by their points if these have ids, which
+/// does not depend on the pieces. Otherwise, keeps the order of the pieces.
 std::vector<Cell> ordered(std::vector<Cell> cells, bool by_ids, bool by_points) {
   std::ranges::stable_sort(cells, {}, [&](const Cell& cell) {
     return std::pair(cell.kind, by_ids ? cell.id : vtkTypeInt64{0});
@@ -195,7 +195,7 @@ bool same_array(vtkDataArray* a, vtkDataArray* b) {
   return bytes == 0 || std::memcmp(a->GetVoidPointer(0), b->GetVoidPointer(0), bytes) == 0;
 }
 
-/// True where pieces of two times have the same cells, ids and ghosts.
+/// Returns whether pieces of two times have the same cells, ids and ghosts.
 bool same_piece(const vtkSmartPointer<vtkPolyData>& a, const vtkSmartPointer<vtkPolyData>& b) {
   const auto same_cells = [](vtkCellArray* x, vtkCellArray* y) {
     return same_array(x->GetOffsetsArray(), y->GetOffsetsArray()) &&
@@ -215,7 +215,7 @@ bool is_whole(const Pieces& pieces) {
   return filled == 0 || (filled == 1 && !is_part(**std::ranges::find_if(pieces, has_points)));
 }
 
-/// The mesh is the piece with points as it is, or nothing.
+/// Result whose mesh is the unchanged only piece with points, or an empty piece.
 MergedPieces whole_piece(Pieces pieces) {
   MergedPieces merged{pieces.front()};
   for (const auto& piece : pieces) {
@@ -251,7 +251,7 @@ void merge_cells(MergedPieces& merged) {
   for (const Cell& cell : cells) merged.cell_holders.push_back(cell.from);
 }
 
-/// Of the same pieces, at another time.
+/// Result for the same pieces at another time.
 MergedPieces followed(Pieces pieces, const MergedPieces& before) {
   expect_joined(pieces, before.points.places);
   MergedPieces merged = before;

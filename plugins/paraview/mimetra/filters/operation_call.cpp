@@ -15,12 +15,12 @@ OperationTable table_of_host() {
   OperationTable table;
   add_toolkit(table);
   add_vtp(table);
-  // What is wrong with them was reported when ParaView loaded this.
+  // Their problems were reported when ParaView loaded the plugin.
   add_plugins(table, plugin_folders());
   return table;
 }
 
-/// Hosts hand over whole numbers, numbers and text; a flag is 0 or 1, all other kinds are typed.
+/// Hosts pass integers, numbers and text. A flag is 0 or 1, and all other kinds are text.
 ParameterValue value_of(const Parameter& parameter, const ParameterValue& shown) {
   const auto* text = std::get_if<std::string>(&shown);
   if (text) return parse_value(parameter, *text);
@@ -58,7 +58,7 @@ const Operation& found(const OperationTable& table, const std::string& name) {
   throw std::invalid_argument("there is no operation '" + name + "'; is its plugin missing?");
 }
 
-/// The parameter that says which points, wherever one does so in numbers.
+/// Parameter that lists points by their numbers.
 constexpr const char* kPoints = "source";
 constexpr const char* kComponents = "components";
 constexpr const char* kComponentsOut = "components-out";

@@ -8,56 +8,58 @@
 #include "toolkit/mesh/context.h"
 #include "toolkit/operations/call.h"
 
-/// True where both have one name, place and values; NaN is NaN.
+/// Returns whether two fields have the same name, place and values. NaN equals NaN.
 bool same_field(const mimetra::Field& a, const mimetra::Field& b);
 
-/// An operation as a host calls it again and again: what it computed is kept until something that
-/// it depends on changes, and a decomposition until the sequence or its own parameters do.
+/// An operation that a host calls repeatedly. Keeps the outcome until something that it depends on
+/// changes. Keeps a decomposition until the sequence or the decomposition's own parameters change.
 class OperationCall {
  public:
-  /// One of the toolkit's operations, or of a plugin's. Throws std::invalid_argument for another.
+  /// Takes an operation of the toolkit or of a plugin. Throws std::invalid_argument if the name is
+  /// unknown.
   explicit OperationCall(const std::string& name);
   explicit OperationCall(mimetra::Operation operation);
 
   const mimetra::Operation& operation() const { return operation_; }
 
-  /// Sets a parameter, or the path of an input; no text is the default, or no input. Values are
-  /// checked when the operation runs. True where something changed.
+  /// Sets a parameter, or the path of an input. Empty text restores the default or removes the
+  /// input. Values are checked when the operation runs. Returns whether something changed.
   bool set(const std::string& name, const mimetra::ParameterValue& value);
-  /// True where it has another value than its default, or a path.
+  /// Returns whether `name` has a value other than its default, or a path.
   bool is_set(const std::string& name) const { return values_.contains(name); }
 
-  /// True for an input whose fields are looked at.
+  /// Returns whether the operation reads the fields of an input.
   bool looks_at_fields(const std::string& input) const;
-  /// What names points by their numbers, as a dialog labels it: a parameter, a file, or another
-  /// mesh than the first, whose points are in the same order; none where nothing does.
+  /// Label, as in the dialog, of what refers to points by their numbers: a parameter, a file, or a
+  /// mesh other than the first input, with points in the same order. Nothing if there is none.
   std::optional<std::string> told_by_numbers() const;
-  /// True where distances do not cross from one vertex to another at its position.
+  /// Returns whether distances do not cross between vertices at the same position.
   bool keeps_vertices_apart() const;
-  /// What an input was given, or null.
+  /// Value that an input was given, or null.
   const mimetra::Data* given(const std::string& input) const;
-  /// Gives an input its value. True where it is another one than before.
+  /// Gives an input its value. Returns whether the value differs from the one before.
   bool give(const std::string& input, mimetra::NamedData data);
-  /// Takes it back.
+  /// Removes the value of an input.
   void take_back(const std::string& input);
 
-  /// A file for the manifest of each run; no text for none. True where it is another than before.
+  /// Sets a file for the manifest of each run; empty text for none. Returns whether the file
+  /// changed.
   bool set_manifest(const std::string& path);
 
-  /// The inputs given, and those read from files, ready to run. Throws what the readers throw,
-  /// UsageError without an input that it needs, OutputError for a manifest that cannot be written
-  /// or would replace anything but one of the same operation.
+  /// Call with the given inputs and those read from files, ready to run. Throws what the readers
+  /// throw, and UsageError if a needed input is missing. Throws OutputError if the manifest cannot
+  /// be written, or would replace a file other than a manifest of the same operation.
   mimetra::Call loaded(const mimetra::Log& log, const mimetra::Context& context) const;
 
-  /// True while what was computed still holds.
+  /// Returns whether the outcome is still valid.
   bool is_done() const { return outcome_.has_value(); }
   const mimetra::Outcome& outcome() const { return *outcome_; }
-  /// Runs the operation, for the outputs `wanted` and those that are not optional, and writes the
-  /// manifest. What it makes as "components-out" is its input `components` from then on. Throws
-  /// what it throws.
+  /// Runs the operation for the outputs `wanted` and those that are not optional, and writes the
+  /// manifest. The output "components-out" becomes the input `components` of later runs. Throws
+  /// what the operation throws.
   const mimetra::Outcome& run(mimetra::Call call, const std::vector<std::string>& wanted);
 
-  /// How often components were computed.
+  /// Number of times that components were computed.
   int decompositions() const { return decompositions_; }
 
  private:

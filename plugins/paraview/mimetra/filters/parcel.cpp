@@ -54,7 +54,7 @@ vtkSmartPointer<vtkDataArray> as_ids(vtkDataArray* array) {
   return ids;
 }
 
-/// Numbers that can be sent.
+/// Returns whether an array has a name and numbers that can be sent.
 bool travels(vtkAbstractArray* array) {
   return array->GetName() && vtkDataArray::SafeDownCast(array) && array->GetDataType() != VTK_BIT;
 }
@@ -76,7 +76,7 @@ void take_fields(Parcel& parcel, vtkFieldData& fields) {
   for (int i = 0; i < count; ++i) fields.AddArray(parcel.take());
 }
 
-/// Which arrays are the normals, the global ids, ...
+/// Adds the names of the arrays that are the normals, the global ids, ...
 void put_roles(Parcel& parcel, vtkDataSetAttributes& attributes) {
   for (int role = 0; role < vtkDataSetAttributes::NUM_ATTRIBUTES; ++role) {
     vtkAbstractArray* active = attributes.GetAbstractAttribute(role);

@@ -10,13 +10,13 @@
 class vtkMultiProcessController;
 class vtkPolyData;
 
-/// Words and arrays of numbers that go from one process to another, and are taken out in the order
+/// Words and arrays of numbers that one process sends to another. They are taken out in the order
 /// in which they were put in.
 class Parcel {
  public:
   vtkMultiProcessStream words;
 
-  /// The array is shared, or copied where its memory is not one block.
+  /// Shares the array, or copies it if its memory is not one block.
   void put(vtkDataArray* array);
   vtkSmartPointer<vtkDataArray> take();
 
@@ -25,47 +25,49 @@ class Parcel {
 
   /// Names, types and sizes of the arrays, and the words.
   vtkMultiProcessStream header() const;
-  /// Arrays that are as a header says, without their numbers. Throws std::bad_alloc.
+  /// Allocates the arrays that a header describes, without their numbers. Throws std::bad_alloc.
   static Parcel laid_out(vtkMultiProcessStream& header);
 
   std::vector<vtkSmartPointer<vtkDataArray>> arrays_;
   std::size_t next_ = 0;
 };
 
-/// Words in words. VTK's own operator writes beyond its memory where there are more than 512 bytes.
+/// Nests words in words. VTK's own operator writes beyond its memory for more than 512 bytes.
 void put_words(vtkMultiProcessStream& words, const vtkMultiProcessStream& inner);
 vtkMultiProcessStream taken_words(vtkMultiProcessStream& words);
 
 void put_times(vtkMultiProcessStream& words, const std::vector<double>& times);
 std::vector<double> taken_times(vtkMultiProcessStream& words);
 
-/// A piece of a mesh with its point, cell and field data that are numbers.
+/// Packs a piece of a mesh with its named numeric point, cell and field data.
 Parcel packed(vtkPolyData& piece);
 vtkSmartPointer<vtkPolyData> unpacked(Parcel& parcel);
 
-/// The processes of a server. What is said to be done by all, each must call, or the others wait
-/// for ever.
+/// The processes of a server. All processes must call a function marked as collective, or the
+/// others wait forever.
 class Processes {
  public:
   explicit Processes(vtkMultiProcessController& controller) : controller_(&controller) {}
 
   int count() const;
   bool is_first() const;
-  /// By all: true where it is true on all.
+  /// Collective. Returns whether `mine` is true on all processes.
   bool all(bool mine);
-  /// By all: what the first one says.
+  /// Collective. Returns the words of the first process.
   vtkMultiProcessStream told(vtkMultiProcessStream words);
-  /// By all: the parcels of all on the first one, none on the others. No value on all where some
-  /// process has no memory for them, as one without its own.
+  /// Collective. Returns the parcels of all processes on the first one, and none on the others.
+  /// Returns no value on all processes if one passes no parcel or lacks memory.
   std::optional<std::vector<Parcel>> gather(std::optional<Parcel> mine);
-  /// By all: a parcel of the first for each. No value on all where some process has no memory.
+  /// Collective. Gives each process its parcel from the first one. Returns no value on all
+  /// processes if one lacks memory.
   std::optional<Parcel> scatter(std::vector<Parcel> parcels);
 
  private:
-  /// What makes room for a parcel goes ahead of it. False where there is none, or no memory, which
-  /// the other process then learns.
+  /// Sends the header of a parcel, so that the other process can allocate it. Returns false and
+  /// sends an empty header if there is no parcel or no memory.
   bool announce(const Parcel* parcel, int to);
-  /// No value where none was announced, or there is no memory for it.
+  /// Receives a header and allocates its parcel. Returns no value if the header is empty or memory
+  /// is short.
   std::optional<Parcel> announced(int from);
   void send(const Parcel& parcel, int to);
   void receive(Parcel& parcel, int from);

@@ -5,17 +5,18 @@
 #include "plugins/paraview/mimetra/filters/merged_pieces.h"
 #include "plugins/paraview/mimetra/filters/parcel.h"
 
-/// True where `output` was made on the points and cells of `mesh`.
+/// Returns whether `output` was made on the points and cells of `mesh`.
 bool lies_on(vtkPolyData& output, vtkPolyData& mesh);
 
-/// Puts in what a piece needs to become its part of `output`, which lies on the merged mesh: what
-/// is another array than the mesh's, and what is gone.
+/// Adds the changes that make a piece its part of `output`: arrays that differ from the merged
+/// mesh's, and the names of removed arrays.
+///
+/// \pre `output` lies on the merged mesh.
 void put_answer(Parcel& parcel, vtkPolyData& output, const MergedPieces& merged, std::size_t piece);
 
-/// Makes `output` the piece with what was put in for it.
+/// Makes `output` from the piece and what put_answer() added.
 void take_answer(Parcel& parcel, vtkPolyData& piece, vtkPolyData& output);
 
-/// The same for a mesh that is whole on the first process: elsewhere it has its arrays, but nothing
-/// in them.
+/// Adds the arrays of `output` without rows, for a mesh that is whole on the first process.
 void put_nothing(Parcel& parcel, vtkPolyData& output);
 void take_nothing(Parcel& parcel, vtkPolyData& output);

@@ -26,7 +26,8 @@ vtkPolyData& first_of(const Pieces& pieces) {
   return **std::ranges::find_if_not(pieces, [](const auto& piece) { return is_empty(*piece); });
 }
 
-/// Of each piece the array of a name, where all that are not empty have it alike.
+/// Array `name` of each piece. Empty unless all pieces with points have it in the same type and
+/// shape.
 std::vector<vtkDataArray*> alike(const Pieces& pieces, const char* name,
                                  const auto& attributes_of) {
   std::vector<vtkDataArray*> arrays;
@@ -92,7 +93,8 @@ vtkSmartPointer<vtkPoints> merged_points(const Pieces& pieces,
   return points;
 }
 
-/// Throws MismatchError where pieces have an array that a rest pose is made of, but not all alike.
+/// Throws MismatchError if some pieces have an array that defines a rest pose, but not all have it
+/// alike.
 void expect_alike(const Pieces& pieces, const char* name) {
   const auto attributes_of = [](vtkPolyData& piece) -> vtkDataSetAttributes& {
     return *piece.GetPointData();
@@ -108,8 +110,9 @@ void expect_alike(const Pieces& pieces, const char* name) {
                       "points of the mesh, or on none");
 }
 
-/// Field data stay behind, whole or in part, where a mesh is distributed: which rows are whose is
-/// not to be known, whatever their number.
+/// Throws MismatchError if a rest pose is field data. Distributing a mesh may leave field data
+/// behind, whole or in part, so it is unknown which rows belong to a piece, even if their number
+/// fits.
 void expect_no_rest_in_fields(const Pieces& pieces) {
   for (const auto& piece : pieces) {
     const bool on_points = piece->GetPointData()->HasArray(kRestPose) != 0;

@@ -28,20 +28,20 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 namespace {
 
-/// What the first process says to the others.
+/// Order of the first process to the others.
 enum class Order { gather, end };
 
-/// What a process has at a port.
+/// Kind of data that a process has at a port.
 enum class Held { mesh, nothing, no_mesh, unreadable };
 
-/// Where a mesh of an output is.
+/// In place of a port: the mesh of an output is on the first process only.
 constexpr int kOnFirst = -1;
 
 int number_of(auto value) {
   return static_cast<int>(value);
 }
 
-/// Without points or cells, its type does not matter. Sources that have data on the first process
+/// Returns whether data are empty, whatever their type. Sources that have data on the first process
 /// only leave an object of no particular kind elsewhere.
 bool is_nothing(vtkDataObject* data) {
   vtkDataSet* set = vtkDataSet::SafeDownCast(data);
@@ -53,19 +53,19 @@ std::string class_of(vtkDataObject* data) {
   return data ? data->GetClassName() : "nothing";
 }
 
-/// What a process says of its piece.
+/// Report of a process on its piece.
 struct Report {
   Held held = Held::unreadable;
   std::string type = {};
   bool has_points = false;
-  std::vector<double> steps = {};   ///< the times that it could be had at
-  std::optional<double> time = {};  ///< the one that it is of
+  std::vector<double> steps = {};   ///< available times
+  std::optional<double> time = {};  ///< time of the piece
 };
 
 Report report_of(const Incoming& incoming) {
   vtkPolyData* mesh = vtkPolyData::SafeDownCast(incoming.data);
   Report report{Held::no_mesh, class_of(incoming.data)};
-  // A surface without points is refused as one of one process is, where nobody has any.
+  // If no process has points, an empty surface is refused, as with one process.
   if (mesh) {
     report.held = Held::mesh;
     report.has_points = mesh->GetNumberOfPoints() > 0;
@@ -99,7 +99,7 @@ Report taken_report(vtkMultiProcessStream& words) {
   return report;
 }
 
-/// Of the pieces that processes say they have. Throws as the header says.
+/// Checks the reported pieces. Throws as input_at() does.
 void expect_meshes(const std::vector<Report>& reports, std::optional<double> time) {
   bool any_mesh = false;
   std::string stranger, nothing;
@@ -131,12 +131,11 @@ std::string described(const std::vector<double>& steps) {
          to_text(steps.back());
 }
 
-/// The time of the mesh, where pieces have one. Throws MismatchError for pieces of different times,
-/// which are no mesh; processes without points are not looked at, save the first, which says what
-/// times there are.
+/// Time of the mesh, if pieces have one. Throws MismatchError for pieces of different times.
+/// Ignores processes without points, except the first, which defines the time steps.
 std::optional<double> one_time_of(const std::vector<Report>& reports) {
   const std::vector<double>& steps = reports.front().steps;
-  const Report* first = nullptr;  // with points, and a time
+  const Report* first = nullptr;  // first report with points and a time
   for (std::size_t process = 0; process < reports.size(); ++process) {
     const Report& report = reports[process];
     if (!report.has_points) continue;
@@ -156,7 +155,7 @@ std::optional<double> one_time_of(const std::vector<Report>& reports) {
   return first ? first->time : std::nullopt;
 }
 
-/// The meshes of an output, at most one where it is no composite.
+/// Meshes of an output: at most one, unless the output is a composite.
 std::vector<vtkPolyData*> meshes_of(vtkDataObject* output) {
   if (auto* mesh = vtkPolyData::SafeDownCast(output)) return {mesh};
   std::vector<vtkPolyData*> meshes;
@@ -175,7 +174,7 @@ void put_blocks(Parcel& parcel, vtkMultiBlockDataSet& blocks) {
   }
 }
 
-/// Makes the blocks, save on the first process, which has them.
+/// Makes the blocks, except on the first process, which has them.
 void take_blocks(Parcel& parcel, vtkMultiBlockDataSet& blocks) {
   int count = 0;
   parcel.words >> count;
@@ -249,7 +248,7 @@ std::optional<std::vector<Parcel>> PieceExchange::gather(int port, std::optional
     mesh = vtkPolyData::SafeDownCast(incoming.data);
     report = report_of(incoming);
   } catch (const std::exception&) {
-    mesh = nullptr;  // which the first process says for all
+    mesh = nullptr;  // the first process reports this for all
   }
   std::optional<Parcel> parcel;
   try {
@@ -314,7 +313,7 @@ bool PieceExchange::end(Attempt how, vtkInformationVector& outputs) {
   } catch (const std::exception&) {
     failure = std::current_exception();
   }
-  // The others wait for it, whatever went wrong.
+  // The others wait for this order, even after a failure.
   vtkMultiProcessStream order;
   order << number_of(Order::end) << number_of(failure ? Attempt::failed : how);
   processes_->told(order);
@@ -353,7 +352,7 @@ bool PieceExchange::share(std::vector<Parcel> parcels, vtkInformationVector& out
     take_outputs(*mine, outputs);
     is_taken = true;
   } catch (const std::bad_alloc&) {
-    is_taken = false;  // which the first process says for all
+    is_taken = false;  // the first process reports this for all
   }
   return all(is_taken);
 }

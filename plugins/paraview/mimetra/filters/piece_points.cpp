@@ -55,14 +55,14 @@ bool is_ghost_point(vtkPolyData& piece, vtkIdType point) {
   return ghosts && (ghosts->GetValue(point) & vtkDataSetAttributes::DUPLICATEPOINT) != 0;
 }
 
-/// What a piece does with its points.
+/// How a piece uses its points.
 struct Uses {
-  std::vector<bool> own;     ///< points of the piece itself, not of a ghost
-  std::vector<bool> border;  ///< where the piece may go on in another: at an edge of one polygon
-  std::vector<bool> loose;   ///< that no cell of the piece's own uses
+  std::vector<bool> own;     ///< points of the piece itself, not of a ghost only
+  std::vector<bool> border;  ///< on an edge of one polygon, where another piece may continue
+  std::vector<bool> loose;   ///< in no own cell of the piece
 };
 
-/// Edges between two corners, the lower first.
+/// Edges as pairs of corners, the lower one first.
 using Edges = std::vector<std::pair<vtkIdType, vtkIdType>>;
 
 void add_edges(Edges& edges, vtkIdList& corners) {
@@ -106,7 +106,7 @@ Uses uses_of(vtkPolyData& piece) {
   return {std::move(own), std::move(border), std::move(loose)};
 }
 
-/// Points of pieces, found again by their positions.
+/// Finds points of pieces by their positions.
 class PointFinder {
  public:
   PointFinder(const Pieces& pieces, std::vector<PieceElement> points)
@@ -123,7 +123,7 @@ class PointFinder {
 
   const std::vector<PieceElement>& points() const { return points_; }
 
-  /// Indices of the points within a seam's width, ascending.
+  /// Indices of the points within seam_width(), ascending.
   std::vector<std::size_t> near(const Point& position) const {
     if (points_.empty()) return {};
     vtkNew<vtkIdList> found;
@@ -162,7 +162,8 @@ vtkIdType& place_of(std::vector<Places>& places, const PieceElement& point) {
   return places[point.piece][static_cast<std::size_t>(point.index)];
 }
 
-/// A point of the mesh takes its data from who owns it.
+/// Gives `point` its place. A point of the mesh takes its data from a piece that owns it, if any
+/// does.
 void add_holder(const Pieces& pieces, PiecePoints& joined, const PieceElement& point,
                 vtkIdType place) {
   place_of(joined.places, point) = place;
@@ -181,9 +182,7 @@ void add_holder(const Pieces& pieces, PiecePoints& joined, const PieceElement& p
                       "the mesh anew");
 }
 
-// By global ids
-
-/// Of each piece.
+/// Global ids of each piece's points.
 using PieceIds = std::vector<std::vector<vtkTypeInt64>>;
 
 PieceIds ids_of(const Pieces& pieces) {
@@ -199,7 +198,7 @@ vtkTypeInt64 id_of(const PieceIds& ids, const PieceElement& point) {
   return ids[point.piece][static_cast<std::size_t>(point.index)];
 }
 
-/// Throws MismatchError where two points cannot have one id.
+/// Throws MismatchError if two points cannot have the same id.
 void expect_same(const Pieces& pieces, vtkTypeInt64 number, const PieceElement& a,
                  const PieceElement& b, double width) {
   const std::string id = "global id " + std::to_string(number);
@@ -214,9 +213,9 @@ void expect_same(const Pieces& pieces, vtkTypeInt64 number, const PieceElement& 
   }
 }
 
-/// Ids that were made for pieces may leave seams open that computing in pieces made: nearly, but
-/// not exactly, at one position. Where they are exactly at one, ids say on purpose that they are
-/// two.
+/// Throws MismatchError if ids keep a seam open. Pieces computed apart may put one point at nearly,
+/// but not exactly, the same position, and Generate Global Ids then gives it two ids. Points at
+/// exactly the same position have different ids on purpose.
 void expect_no_open_seams(const Pieces& pieces, const std::vector<Uses>& uses,
                           const PieceIds& ids) {
   const PointFinder borders(pieces, points_where(pieces, [&](std::size_t piece, std::size_t i) {
@@ -265,9 +264,7 @@ PiecePoints joined_by_ids(const Pieces& pieces, const std::vector<Uses>& uses) {
   return joined;
 }
 
-// By positions
-
-/// Sets of points that are one, each known by its lowest member.
+/// Sets of points that are one, each identified by its lowest member.
 class Groups {
  public:
   explicit Groups(std::size_t count) : parent_(count) {
@@ -286,9 +283,9 @@ class Groups {
   std::vector<std::size_t> parent_;
 };
 
-/// Throws MismatchError where a group has two points of one piece.
+/// Throws MismatchError if a group has two points of one piece.
 void expect_one_of_each(const Groups& groups, const std::vector<PieceElement>& points) {
-  std::vector<std::pair<std::size_t, std::size_t>> members;  // group, and index of a point
+  std::vector<std::pair<std::size_t, std::size_t>> members;  // group, index of a point
   for (std::size_t i = 0; i < points.size(); ++i) members.push_back({groups.root(i), i});
   std::ranges::sort(members);
   for (std::size_t i = 1; i < members.size(); ++i) {
@@ -310,8 +307,8 @@ bool is_loose(const std::vector<Uses>& uses, const PieceElement& point) {
   return uses[point.piece].loose[static_cast<std::size_t>(point.index)];
 }
 
-/// `finder` holds all own points. Throws MismatchError where one inside a piece is at a point of
-/// another: a copy of it, or another surface at the same place.
+/// Groups of points to join. `finder` holds all own points. Throws MismatchError if a point inside
+/// a piece is at a point of another. It may be a copy, or belong to another surface.
 Groups seams(const Pieces& pieces, const std::vector<Uses>& uses, const PointFinder& finder) {
   const std::vector<PieceElement>& points = finder.points();
   Groups groups(points.size());

@@ -11,7 +11,7 @@ class vtkPolyData;
 /// Pieces of one mesh, one for each process that holds some of it.
 using Pieces = std::vector<vtkSmartPointer<vtkPolyData>>;
 
-/// Where each point, or cell, of a piece is in the whole mesh.
+/// Index in the whole mesh of each point, or cell, of a piece.
 using Places = std::vector<vtkIdType>;
 
 /// A point or cell of a piece.
@@ -20,42 +20,43 @@ struct PieceElement {
   vtkIdType index = 0;
 };
 
-/// Which points of pieces are one.
+/// Points of the mesh, and which points of pieces they join.
 struct PiecePoints {
-  std::vector<Places> places;         ///< of each piece's points
-  std::vector<PieceElement> holders;  ///< of each point of the mesh, who is asked for its data
-  bool named = false;                 ///< by global ids, in whose order the points are
-  bool counted = false;    ///< those are 0, 1, 2, ..., so that numbers of points name them
-  std::size_t joined = 0;  ///< points of pieces that became others', by position
+  std::vector<Places> places;         ///< places of each piece's points
+  std::vector<PieceElement> holders;  ///< point that gives its data to each point of the mesh
+  bool named = false;                 ///< points were joined by global ids and are in their order
+  bool counted = false;               ///< the ids are 0, 1, 2, ..., so they equal numbers of points
+  std::size_t joined = 0;             ///< number of points joined with others by position
 };
 
-/// What to do about pieces that cannot be put together as they are.
+/// Advice for pieces that cannot be merged without changes.
 constexpr const char* kNumberThem =
     "use Generate Global Ids before the mesh is distributed, or one process";
 
-/// Global ids, which may be too large for a double.
+/// Global ids as integers, because they may be too large for a double.
 std::vector<vtkTypeInt64> ids_of(vtkDataArray& ids);
 
-/// True for a piece that may be a part of a mesh even where no other process holds any of it: its
-/// points have global ids, or some of its points or cells are marked as another process's.
+/// Returns whether a piece may be a part of a mesh even if no other process holds any of it. Such a
+/// piece has global ids of points, or ghost points or cells.
 bool is_part(vtkPolyData& piece);
 
-/// Throws MismatchError where a position is not finite.
+/// Throws MismatchError if a position is not finite.
 void expect_finite(const Pieces& pieces);
 
-/// True for a cell that another process holds as its own.
+/// Returns whether another process holds a cell as its own.
 bool is_ghost_cell(vtkPolyData& piece, vtkIdType cell);
 
-/// Below this distance, positions that two processes computed are one: a millionth of the largest
-/// coordinate, eight times what single precision keeps apart.
+/// Distance within which positions on two processes count as one: a millionth of the largest
+/// coordinate, about eight times the resolution of single precision.
 double seam_width(const Pieces& pieces);
 
-/// Finds the points of the mesh. Points with one global id are one, and are in the order of their
-/// ids; where a piece has none, points on the borders of different pieces less than seam_width()
-/// apart are one, in the order of the pieces. What one piece keeps apart stays apart. Ghost points
-/// have places, but are no points of their own. Throws MismatchError where ids contradict each
-/// other or positions, or it cannot be known which points are one.
+/// Finds the points of the mesh. If all pieces with points have global ids, points with the same id
+/// are one, in the order of their ids. Otherwise, points of different pieces are one if they are
+/// within seam_width() and on the borders of both, or in no cell of one. They are in the order of
+/// the pieces. Points of one piece are never joined. Ghost points have places, but are not points
+/// of their own. Throws MismatchError if ids contradict each other or positions, or if the points
+/// to join are ambiguous.
 PiecePoints joined_points(const Pieces& pieces);
 
-/// Throws MismatchError where points of pieces that have one place are apart.
+/// Throws MismatchError if points with the same place are farther than seam_width() apart.
 void expect_joined(const Pieces& pieces, const std::vector<Places>& places);

@@ -29,7 +29,7 @@ std::string choice_domain(const std::vector<std::string>& choices) {
   return domain + "</StringListDomain>";
 }
 
-/// How ParaView holds a value: the kind of property, the setter, and the domain of the values.
+/// Property for a value in ParaView: its element, its setter, and the domain of its values.
 struct Holder {
   std::string element;
   std::string command;
@@ -49,7 +49,7 @@ Holder holder_of(const Parameter& parameter) {
     case ParameterKind::choice:
       return {"StringVectorProperty", "SetText", choice_domain(parameter.choices)};
     case ParameterKind::file:
-      // What is typed may be a word, a pattern, or a model with an identity.
+      // The typed text may be a word, a pattern, or a model with an identity.
       return {"StringVectorProperty", "SetText",
               "<FileListDomain name=\"files\"/><Hints><AcceptAnyFile/></Hints>"};
     default:
@@ -65,7 +65,7 @@ std::string help_of(const Parameter& parameter) {
   }
   const bool is_file = parameter.kind == ParameterKind::file;
   const bool optional = std::holds_alternative<std::monostate>(parameter.fallback);
-  // A choice that has a default is one from a list.
+  // A choice with a default is picked from a list, which shows the choices.
   if (!parameter.choices.empty() && (is_file || optional)) {
     help += is_file ? "; a file, or one of" : "; one of";
     for (const std::string& choice : parameter.choices) help += ' ' + choice;
@@ -105,7 +105,8 @@ std::string output_port_xml(const std::string& name, std::size_t index) {
          "/>\n";
 }
 
-/// A label says what is held where a port has the name alone: Python knows both by their labels.
+/// Label of a property. Appends `held` if a port has the same name, because Python accesses both by
+/// their labels.
 std::string label_beside_ports(const Proxy& proxy, const std::string& name,
                                const std::string& held) {
   const std::string label = label_of(name);
@@ -113,7 +114,7 @@ std::string label_beside_ports(const Proxy& proxy, const std::string& name,
   return is_taken ? label + ' ' + held : label;
 }
 
-/// The property of a parameter, or of an input that may be a file; nothing for one that may not.
+/// Property of a parameter, or of an input that may be a file. Empty for other inputs.
 std::string property_named(const Proxy& proxy, const std::string& name, bool advanced) {
   const auto& inputs = proxy.operation.inputs;
   const auto input = std::ranges::find(inputs, name, &Input::name);
@@ -124,7 +125,7 @@ std::string property_named(const Proxy& proxy, const std::string& name, bool adv
   const auto port = std::ranges::find(proxy.ports, name, &Port::input);
   const bool has_port = port != proxy.ports.end();
   if (has_port && !port->optional) return "";
-  // No default, where it may stay empty.
+  // An input that may stay empty has no default.
   const auto fallback = input->optional || has_port ? ParameterValue() : ParameterValue("");
   return property_of({input->name, ParameterKind::file, fallback, input->help},
                      label_beside_ports(proxy, name, "File"), advanced);

@@ -2,5 +2,5 @@
 
 #include "toolkit/operations/operation.h"
 
-/// What the source does: it reads a sequence, with the fields of formats that have some.
+/// Operation of the source: reads a sequence, with fields if the format has some.
 mimetra::Operation reading_operation();

@@ -11,40 +11,42 @@
 class vtkDataObject;
 class vtkPolyData;
 
-/// What is wrong with data of a class that is no mesh.
+/// Error for data of a class that is not a mesh.
 std::invalid_argument no_mesh_error(const std::string& found);
 
-/// The mesh of a data object. Throws std::invalid_argument where it is none.
+/// Mesh of a data object. Throws std::invalid_argument if the object is not a mesh.
 vtkPolyData& mesh_of(vtkDataObject* data);
 
 /// The time steps of an input, collected one after the other.
 class TimeSteps {
  public:
-  /// Begins anew; no times for a mesh that stands still. `with_fields`: also the point and cell
-  /// data of the first time step.
+  /// Starts over. `times` is empty for a static mesh. With `with_fields`, collects the point and
+  /// cell data of the first time step too.
   void begin(std::vector<double> times, bool with_fields);
 
   bool complete() const { return next_ == count(); }
   double share() const { return static_cast<double>(next_) / static_cast<double>(count()); }
-  /// The time to ask for next; none for a mesh that stands still.
+  /// Time to request next; none for a static mesh.
   std::optional<double> next_time() const;
-  /// Throws IoError, MismatchError and std::invalid_argument that name the time.
+  /// Adds a time step. Throws std::invalid_argument if `data` is not a mesh. Throws IoError and
+  /// MismatchError, whose messages name the time.
   void add(vtkDataObject* data);
-  /// What was collected, which is then forgotten, save its times and counts.
+  /// Returns the collected sequence and forgets it, except for its times and counts.
   mimetra::FieldSequence taken();
 
-  /// What is odd about those collected.
+  /// Notes on what is odd about the collected time steps.
   const std::vector<std::string>& notes() const { return notes_; }
-  /// True where the point data `displacement` were mimetra's, and not anything else's.
+  /// Returns whether the point data `displacement` were written by mimetra.
   bool are_displaced() const { return are_displaced_; }
 
-  /// Throws MismatchError for a mesh at `time` with other numbers of vertices or faces than those
-  /// collected.
+  /// Throws MismatchError if a mesh at `time` has other numbers of vertices or faces than the
+  /// collected ones.
   void expect_counts_of(vtkPolyData& mesh, std::optional<double> time) const;
 
  private:
   std::size_t count() const { return times_.empty() ? 1 : times_.size(); }
-  /// Empty where the points are as a whole where they were when the rest pose was set.
+  /// Adds a note on the carried rest pose; empty if the points have moved as a whole since it was
+  /// set.
   void note_on_carried(const std::string& note);
 
   std::vector<double> times_;
@@ -55,12 +57,12 @@ class TimeSteps {
   mimetra::Connectivity connectivity_;
   mimetra::Frames frames_;
   std::optional<mimetra::Positions> rest_;
-  bool rest_is_whole_ = false;  ///< it came with the points, and no filter has bent these
+  bool rest_is_whole_ = false;  ///< the points carry the rest pose, and no filter has bent them
   mimetra::DisplacedRest displaced_{1};
   bool are_displaced_ = false;
   std::vector<std::string> notes_;
   std::vector<mimetra::Field> fields_;
 };
 
-/// The frame nearest to a time.
+/// Frame nearest to a time.
 int frame_at(const mimetra::MeshSequence& sequence, double time);

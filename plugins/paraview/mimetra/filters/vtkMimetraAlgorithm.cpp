@@ -12,7 +12,7 @@ using namespace mimetra;
 
 namespace {
 
-/// Options as the dialogs label them.
+/// Message with options named as in the dialogs.
 std::string in_its_words(const std::string& message) {
   return with_options_spelled(
       message, [](const std::string& option) { return "'" + label_of(option) + "'"; });
@@ -109,6 +109,6 @@ int vtkMimetraAlgorithm::ComputePipelineMTime(vtkInformation* request,
 }
 
 void vtkMimetraAlgorithm::begin_execution() {
-  // Not by its setter, which would make this algorithm and all after it execute again.
+  // The setter would make this algorithm and all after it execute again.
   AbortExecute = 0;
 }

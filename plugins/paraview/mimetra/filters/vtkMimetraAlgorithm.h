@@ -17,20 +17,21 @@ struct Invocation;
 struct Outcome;
 }  // namespace mimetra
 
-/// What the sources and filters share: an operation's parameters, progress, abort and errors.
+/// Base of the sources and filters: an operation's parameters, progress, abort and errors.
 class MIMETRAFILTERS_EXPORT vtkMimetraAlgorithm : public vtkPolyDataAlgorithm {
  public:
   vtkTypeMacro(vtkMimetraAlgorithm, vtkPolyDataAlgorithm);
 
-  /// A parameter of the operation by name, or the path of an input; no text for its default.
+  /// Sets a parameter of the operation, or the path of an input. Empty text restores the default.
   void SetInteger(const char* name, int value);
   void SetNumber(const char* name, double value);
   void SetText(const char* name, const char* value);
 
-  /// A file for the manifest of each run, which replaces that of an earlier one; no text for none.
+  /// Sets a file for the manifest of each run, which replaces the manifest of an earlier run; empty
+  /// for none.
   void SetRunFile(const char* path);
 
-  /// How often components were computed.
+  /// Number of times that components were computed.
   int GetDecompositions();
 
   int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** inputs,
@@ -42,22 +43,24 @@ class MIMETRAFILTERS_EXPORT vtkMimetraAlgorithm : public vtkPolyDataAlgorithm {
 
   OperationCall& call() { return *call_; }
   const OperationCall& call() const { return *call_; }
-  /// Takes another operation, with its defaults.
+  /// Switches to another operation, with its defaults.
   void set_call(std::unique_ptr<OperationCall> call);
-  /// Outputs besides those that are not optional.
+  /// Optional outputs to make.
   virtual std::vector<std::string> wanted_outputs(const mimetra::Invocation& invocation);
-  /// The operation's outcome, kept while it holds; its progress is shown from `begin` on. Throws
+  /// Outcome of the operation, cached while it is valid. Progress is shown from `begin` on. Throws
   /// what the operation throws.
   const mimetra::Outcome& outcome(double begin = 0);
-  /// Calls `work`; what it throws is shown as an error, save an abort, which is no result.
+  /// Calls `work` and shows what it throws as an error. An abort shows nothing, and the next update
+  /// starts over.
   Attempt attempt(const std::function<void()>& work);
-  /// Shows progress; false to stop.
+  /// Shows progress. Returns false if the user aborts.
   bool show_progress(double share);
-  /// The next update begins anew, at the same time too.
+  /// Makes the next update start over, even at the same time.
   void begin_anew() { begins_anew_ = true; }
-  /// What was begun anew has ended: until then, what was said is not said again.
+  /// Ends an update that started over. Until then, an error that was shown before is not shown
+  /// again.
   void end_anew() { is_anew_ = false; }
-  /// Forgets an abort of an earlier execution.
+  /// Clears an abort of an earlier execution.
   void begin_execution();
 
  private:

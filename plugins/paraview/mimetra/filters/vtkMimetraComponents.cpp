@@ -19,8 +19,8 @@ vtkStandardNewMacro(vtkMimetraComponents);
 
 namespace {
 
-/// Where the mesh of a component stands among so many, each a mesh's width and a bit apart: in
-/// columns along x, and in rows along the longer of the other axes, which is up in a face.
+/// Offset of a component's mesh. Meshes are 1.2 times their size apart. Columns run along x, and
+/// rows along the longer of the other axes, which is up in a face.
 Eigen::RowVector3d place_of(int component, int count, const Positions& rest) {
   constexpr double kApart = 1.2;
   const int columns = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(count))));
@@ -75,7 +75,7 @@ void vtkMimetraComponents::show(const Outcome& outcome, vtkPolyData& input, doub
                         components.support.row(k).transpose()};
     add_field(*block, support, faces);
     blocks->SetBlock(static_cast<unsigned>(k), block);
-    // As in the table of weights, whose first column is the time.
+    // Blocks have the names of the weights; the first column of that table is the time.
     blocks->GetMetaData(static_cast<unsigned>(k))
         ->Set(vtkCompositeDataSet::NAME(),
               weights.columns[static_cast<std::size_t>(k) + 1].c_str());

@@ -2,14 +2,14 @@
 
 #include "plugins/paraview/mimetra/filters/vtkMimetraFilter.h"
 
-/// Sparse components, each a block that shows it at weight 1, and their weights over time. A class
-/// of its own because components are neither a sequence nor fields: what shows them is made here.
+/// Sparse components as blocks, each at weight 1, and their weights over time. This needs a class
+/// of its own because components are neither a sequence nor fields: the class makes the blocks.
 class MIMETRAFILTERS_EXPORT vtkMimetraComponents : public vtkMimetraFilter {
  public:
   vtkTypeMacro(vtkMimetraComponents, vtkMimetraFilter);
   static vtkMimetraComponents* New();
 
-  /// Whether blocks stand in rows beside each other, or all where the mesh is.
+  /// Sets whether blocks are in rows beside each other, or all at the mesh.
   void SetSideBySide(int on);
 
  protected:

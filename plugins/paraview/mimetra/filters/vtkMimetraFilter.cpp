@@ -29,7 +29,7 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 namespace {
 
-/// Changes with everything that the data behind an executive are made of, save the time asked for.
+/// Modification time of the data behind an executive, apart from the requested time.
 vtkMTimeType changed_at(vtkExecutive* executive) {
   auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(executive);
   return pipeline ? pipeline->GetPipelineMTime() : 0;
@@ -48,8 +48,8 @@ void set_key(vtkInformation& output, vtkInformationDoubleVectorKey* key,
   if (!times.empty()) output.Set(key, times.data(), static_cast<int>(times.size()));
 }
 
-/// The time at which what moves comes out, whichever output asks; what stands still is made of the
-/// first time step, whatever is shown beside it. None for an input that stands still.
+/// Time to show: the requested time if the output has time steps, else the first time step. None
+/// for a static input.
 std::optional<double> asked_time(vtkInformation& in, vtkInformation& out) {
   const std::vector<double> times = times_of(in);
   if (times.empty()) return {};
@@ -57,7 +57,7 @@ std::optional<double> asked_time(vtkInformation& in, vtkInformation& out) {
   return is_asked ? out.Get(Pipeline::UPDATE_TIME_STEP()) : times.front();
 }
 
-/// A model is one mesh: of a series, the first.
+/// First time of a series, because a model is a single mesh.
 std::optional<double> first_time_of(vtkInformation& info) {
   if (!info.Has(Pipeline::TIME_STEPS())) return {};
   return info.Get(Pipeline::TIME_STEPS())[0];
@@ -71,7 +71,7 @@ ModelData model_of(vtkPolyData& mesh, const std::string& name) {
       BlendshapeModel(std::move(connectivity), std::move(positions), std::move(none)))};
 }
 
-/// Throws std::invalid_argument for data of any time in a range.
+/// Throws std::invalid_argument if the data are continuous over a range of time.
 void refuse_continuous(vtkInformation& in) {
   if (in.Has(Pipeline::TIME_STEPS()) || !in.Has(Pipeline::TIME_RANGE())) return;
   const double* range = in.Get(Pipeline::TIME_RANGE());
@@ -81,7 +81,7 @@ void refuse_continuous(vtkInformation& in) {
                               "; save it as a series of files first");
 }
 
-/// Share of the progress in which time steps are read.
+/// Share of the progress for reading time steps.
 constexpr double kReading = 0.3;
 
 }  // namespace
@@ -114,14 +114,14 @@ void vtkMimetraFilter::name_inputs() {
   SetNumberOfInputPorts(1 + static_cast<int>(mesh_ports_.size()));
 }
 
-// What is not a mesh is refused in RequestData, in words that say what to do about it.
+// RequestData refuses data that are not a mesh, with a message that says what to do.
 int vtkMimetraFilter::FillInputPortInformation(int port, vtkInformation* info) {
   if (port > 0) info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
   return 1;
 }
 
-// Processes do not come here together: one whose input alone was changed comes alone.
+// Not collective: if only one process's input changed, only that process calls this.
 int vtkMimetraFilter::RequestInformation(vtkInformation*, vtkInformationVector**,
                                          vtkInformationVector* outputs) {
   set_times(*outputs, times_.value_or(input_times()));
@@ -162,13 +162,14 @@ int vtkMimetraFilter::RequestUpdateExtent(vtkInformation* request, vtkInformatio
   return 1;
 }
 
-// Now, because VTK does not ask a process for data whose input fails, and all others would wait for
-// it. It is asked again at the next update, and so all must be.
+// This happens before RequestData, because VTK does not ask a process for data if its input fails.
+// All others would wait for it. VTK asks that process again at the next update, so all processes
+// must be asked again.
 bool vtkMimetraFilter::begin_request(vtkInformation& output, vtkInformationVector& outputs) {
   bool begun = false;
   attempt([&] {
     if (exchange_->begin(output)) forget_inputs();
-    // Whatever went wrong with it, all wait here.
+    // All processes wait here, even if one failed.
     const bool updated = !exchange_->in_pieces() || update_inputs();
     begun = exchange_->all(updated);
     const bool knew = exchange_->all(learn_times(outputs));
@@ -181,7 +182,7 @@ bool vtkMimetraFilter::begin_request(vtkInformation& output, vtkInformationVecto
   return begun;
 }
 
-// VTK asks no process for another time that knows of none, nor do filters after it.
+// VTK and later filters never ask a process for another time if it knows no times.
 bool vtkMimetraFilter::learn_times(vtkInformationVector& outputs) {
   const Times known = times_.value_or(input_times());
   vtkMultiProcessStream words;
@@ -197,7 +198,7 @@ bool vtkMimetraFilter::learn_times(vtkInformationVector& outputs) {
   return told == known;
 }
 
-// VTK takes what failed for done: asked for the same again, it succeeds, without data.
+// VTK treats a failed update as done: the same request then succeeds without data.
 bool vtkMimetraFilter::update_inputs() {
   bool updated = failed_ != asked();
   const Attempt attempted = attempt([&] {
@@ -341,7 +342,7 @@ void vtkMimetraFilter::compute_and_show(std::optional<double> time, vtkInformati
   expect_order();
   tell_of_seams();
   const Outcome& computed = outcome(kReading);
-  // Others that share the input may have left it at another time.
+  // Other filters that share the input may have left it at another time.
   vtkPolyData& mesh = mesh_of(exchange_->input_at(0, time));
   steps_->expect_counts_of(mesh, time);
   const vtkMTimeType now = changed_at(GetExecutive());
@@ -355,7 +356,7 @@ void vtkMimetraFilter::compute_and_show(std::optional<double> time, vtkInformati
   const double shown = has_time ? about->Get(vtkDataObject::DATA_TIME_STEP()) : time.value_or(0);
   show(computed, mesh, shown, outputs);
   tell_of_lost_arrays(mesh, *outputs);
-  // Whatever it is made of, what moves is at the input's time.
+  // An output with time steps has the input's time, whatever it is made of.
   if (!moves(0)) return;
   vtkDataObject::GetData(outputs, 0)
       ->GetInformation()
@@ -385,7 +386,7 @@ void vtkMimetraFilter::give_meshes(vtkInformationVector** inputs) {
   int port = 0;
   for (MeshPort& each : mesh_ports_) {
     ++port;
-    // ParaView asks for a mesh at the port even where the input is a file.
+    // ParaView asks for a mesh at the port even if the input is a file.
     const Origin origin = call().is_set(each.input) ? Origin() : origin_of(port);
     if (each.given == origin) continue;
     each.given.reset();
@@ -394,7 +395,7 @@ void vtkMimetraFilter::give_meshes(vtkInformationVector** inputs) {
     if (origin == Origin()) {
       call().take_back(each.input);
     } else {
-      // A copy, because it may be the first input too, which moves on.
+      // Copy the mesh, because it may also be the first input, whose time changes.
       const std::string name = "the " + each.input;
       const auto first = first_time_of(*inputs[port]->GetInformationObject(0));
       each.mesh = vtkSmartPointer<vtkPolyData>::New();

@@ -17,9 +17,10 @@ class TimeSteps;
 class vtkAlgorithmOutput;
 class vtkDataObject;
 
-/// A filter that gives its operation all time steps of its input as one sequence (or, for some, the
-/// one that is shown), and meshes at further ports as models; it shows what came of it at the time
-/// asked for. On a server of several processes the first one does so, for the pieces of all.
+/// A filter that passes all time steps of its input to its operation as one sequence, and meshes at
+/// further ports as models. Some operations get only the shown time step. The filter shows the
+/// outcome at the requested time. On a server of several processes, the first one does this for the
+/// pieces of all.
 class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
  public:
   vtkTypeMacro(vtkMimetraFilter, vtkMimetraAlgorithm);
@@ -29,7 +30,7 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
 
   explicit vtkMimetraFilter(const char* operation, Takes takes = Takes::all_time_steps);
   ~vtkMimetraFilter() override;
-  /// Takes another operation. Throws std::invalid_argument for one that begins with no mesh.
+  /// Switches to another operation. Throws std::invalid_argument if it does not begin with a mesh.
   void become(std::unique_ptr<OperationCall> call);
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
@@ -40,33 +41,34 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   int RequestData(vtkInformation* request, vtkInformationVector** inputs,
                   vtkInformationVector* outputs) override;
 
-  /// True where an output has time steps; a table over time has none.
+  /// Returns whether an output has time steps; a table over time has none.
   virtual bool moves(int port) const;
-  /// The operation's name for what comes in at port 0.
+  /// Name of the operation's input at port 0.
   const std::string& piped() const { return input_; }
-  /// The mesh that came in at a further port, or null where there is none, or a file instead.
+  /// Mesh at a further port, or null if there is none or the input is a file.
   vtkPolyData* mesh_at(int port) const;
-  /// Makes what stays the same over time; called before the first show() after any change, and
-  /// where the input has other cells beside its polygons than before.
+  /// Makes what all time steps share. Called before the first show() after any change, and if the
+  /// number of the input's vertex, line or other cells changes.
   virtual void prepare(const mimetra::Outcome& outcome, vtkPolyData& input);
   /// Writes the outputs; `input` is the mesh at `time`.
   virtual void show(const mimetra::Outcome& outcome, vtkPolyData& input, double time,
                     vtkInformationVector* outputs) = 0;
 
  private:
-  /// Where the data at a port come from: other data, save those of another time, have another one.
+  /// Origin of the data at a port. Other data have another origin, but other times of the same data
+  /// do not.
   struct Origin {
     vtkAlgorithmOutput* connection = nullptr;
     vtkMTimeType changed = 0;
     bool operator==(const Origin&) const = default;
   };
-  /// The times that an input can be had at.
+  /// Times at which an input is available.
   struct Times {
     std::vector<double> steps = {};
     std::vector<double> range = {};
     bool operator==(const Times&) const = default;
   };
-  /// A further input that may come in as a mesh.
+  /// A further input that may be a mesh.
   struct MeshPort {
     std::string input;
     std::optional<Origin> given = {};
@@ -74,44 +76,43 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   };
 
   Origin origin_of(int port);
-  /// What is asked of the input at a port.
+  /// Request to the input at a port.
   struct Asked {
     Origin origin = {};
     std::optional<double> time = {};
     bool operator==(const Asked&) const = default;
   };
 
-  /// What comes in at a port of this process, brought to a time where it has times. Throws IoError
-  /// where it cannot be had.
+  /// Input at a port of this process, at `time` if it has times. Throws IoError if it cannot be
+  /// read.
   vtkDataObject* input_at(int port, std::optional<double> time);
   Times input_times();
   void set_times(vtkInformationVector& outputs, const Times& times) const;
   void name_inputs();
-  /// By each process: whether this request is for a piece, and brings what comes in up to date.
-  /// False, on all processes, where one of them cannot.
+  /// On each process: finds out whether the request is for a piece, and updates the inputs. Returns
+  /// false on all processes if one of them fails.
   bool begin_request(vtkInformation& output, vtkInformationVector& outputs);
-  /// By all: gives outputs that move the times of the first one's input. False where they had
-  /// others.
+  /// Collective. Gives time-dependent outputs the times of the first process's input. Returns false
+  /// if they had other times.
   bool learn_times(vtkInformationVector& outputs);
   bool update_inputs();
-  /// Of all ports.
+  /// Requests at all ports.
   std::vector<Asked> asked();
-  /// Forgets what came in before.
+  /// Forgets earlier inputs.
   void forget_inputs();
-  /// Throws UsageError where the operation is told points by their numbers, which say nothing where
-  /// the mesh is in pieces without global ids.
+  /// Throws UsageError if the operation refers to points by their numbers while the mesh is in
+  /// pieces without global ids 0, 1, 2, ...
   void expect_order();
-  /// Warns, once for an input, where points without global ids were joined by their positions.
-  /// Throws UsageError where the operation keeps apart what is at one position.
+  /// Warns, once for an input, if points without global ids were joined by their positions. Throws
+  /// UsageError if the operation keeps vertices at one position apart.
   void tell_of_seams();
-  /// Warns, once for the same, of the input's arrays that the first output does not pass on.
+  /// Warns of input arrays that the first output does not pass on, once for the same arrays.
   void tell_of_lost_arrays(vtkPolyData& input, vtkInformationVector& outputs);
-  /// On the first process computes for all; the others do what it says.
+  /// Computes for all on the first process; the others follow its orders.
   void compute_or_serve(vtkInformationVector** inputs, vtkInformationVector* outputs);
-  /// Gives the operation what comes in at further ports.
+  /// Passes the meshes at further ports to the operation.
   void give_meshes(vtkInformationVector** inputs);
-  /// Gives the operation the input's time steps, where they are others than before, or the one that
-  /// is shown.
+  /// Passes the input's time steps to the operation if they changed, or only the shown one.
   void collect(vtkInformation& in, std::optional<double> shown);
   void compute_and_show(std::optional<double> time, vtkInformationVector* outputs);
 
@@ -120,8 +121,8 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   Takes takes_;
   std::unique_ptr<PieceExchange> exchange_;
   bool begun_ = true;
-  std::optional<std::vector<Asked>> failed_;  ///< what could not be had
-  std::optional<Times> times_;                ///< of the first process, save on that one
+  std::optional<std::vector<Asked>> failed_;  ///< requests that failed
+  std::optional<Times> times_;  ///< of the first process's input; set on the others only
   std::unique_ptr<TimeSteps> steps_;
   std::optional<Origin> collected_;
   std::optional<Origin> told_of_;  ///< the input whose seams were joined

@@ -2,8 +2,8 @@
 
 #include "plugins/paraview/mimetra/filters/vtkMimetraFilter.h"
 
-/// Distances along the mesh of the time step that is shown. A class of its own because of that:
-/// they are computed anew at each time, from this time step alone.
+/// Distances along the mesh of the shown time step. This needs a class of its own because the
+/// distances are computed anew at each time, from that time step alone.
 class MIMETRAFILTERS_EXPORT vtkMimetraGeodesic : public vtkMimetraFilter {
  public:
   vtkTypeMacro(vtkMimetraGeodesic, vtkMimetraFilter);

@@ -27,14 +27,15 @@ const MeshSequence& sequence_of(const Data& data) {
   return std::get<FieldSequence>(data).sequence();
 }
 
-/// Throws std::runtime_error where nothing was made.
+/// First value of an output. Throws std::runtime_error if there is none.
 const Data& made_by(const Outcome& outcome, const std::string& output) {
   const auto made = outcome.outputs.find(output);
   if (made != outcome.outputs.end() && !made->second.empty()) return made->second.front().data;
   throw std::runtime_error("the operation made nothing for its output '" + output + "'");
 }
 
-/// On the same faces. What knows no rest pose has the other's.
+/// Returns whether two sequences on the same faces are equal. A result without a rest pose has the
+/// input's.
 bool same_shape(const MeshSequence& made, const MeshSequence& given) {
   return made.frames() == given.frames() && made.times() == given.times() &&
          made.positions() == given.positions() &&
@@ -51,7 +52,7 @@ void vtkMimetraOperation::SetOperation(const char* name) {
     if (call->operation().name == this->call().operation().name) return;
     become(std::move(call));
     SetNumberOfOutputPorts(static_cast<int>(shown_outputs(this->call().operation()).size()));
-    // They said what the operation before shows.
+    // The port information describes the outputs of the previous operation.
     for (int port = 0; port < GetNumberOfOutputPorts(); ++port) {
       GetOutputPortInformation(port)->Clear();
     }
@@ -70,7 +71,7 @@ bool vtkMimetraOperation::moves(int port) const {
 }
 
 std::vector<std::string> vtkMimetraOperation::wanted_outputs(const Invocation&) {
-  // They may be some that the command only makes when asked.
+  // The command makes some of these only when asked.
   std::vector<std::string> wanted;
   for (const ShownOutput& shown : shown_outputs(call().operation())) {
     if (shown.content != Content::report) wanted.push_back(shown.output);
@@ -115,7 +116,7 @@ void vtkMimetraOperation::prepare_mesh(const Outcome& outcome, vtkPolyData& inpu
   const Data& given = *call().given(piped());
   const bool same = same_shape(sequence, sequence_of(given));
   shown_ = same ? Shown::on_the_input : Shown::in_another_shape;
-  // What was only handed on is the input's own, which may change over time.
+  // Fields that the operation passed on belong to the input, where they may change over time.
   std::erase_if(fields, [&own = std::get<FieldSequence>(given).fields](const Field& field) {
     return std::ranges::any_of(own, [&](const Field& each) { return same_field(each, field); });
   });

@@ -7,15 +7,15 @@
 
 #include "plugins/paraview/mimetra/filters/vtkMimetraFilter.h"
 
-/// Any operation that begins with a mesh over time and needs no more of ParaView than a call. A
-/// sequence or fields that it makes on the input's own faces are shown with the input's data, on
-/// other faces as a mesh of their own; tables, or the report, as tables.
+/// Any operation that begins with a mesh over time and needs only a call from ParaView. A sequence
+/// or fields on the input's own faces are shown with the input's data; on other faces, as a
+/// separate mesh. Tables, or else the report, are shown as tables.
 class MIMETRAFILTERS_EXPORT vtkMimetraOperation : public vtkMimetraFilter {
  public:
   vtkTypeMacro(vtkMimetraOperation, vtkMimetraFilter);
   static vtkMimetraOperation* New();
 
-  /// Which one it is, set before anything else.
+  /// Sets the operation; call this before anything else.
   void SetOperation(const char* name);
 
  protected:
@@ -35,5 +35,5 @@ class MIMETRAFILTERS_EXPORT vtkMimetraOperation : public vtkMimetraFilter {
                  vtkPolyData& output);
 
   Shown shown_ = Shown::on_the_input;
-  vtkNew<vtkPolyData> shared_;  ///< what all time steps share: fields, and faces of its own
+  vtkNew<vtkPolyData> shared_;  ///< fields, and faces unless the input's, of all time steps
 };

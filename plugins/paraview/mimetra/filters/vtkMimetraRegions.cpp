@@ -16,7 +16,7 @@ vtkStandardNewMacro(vtkMimetraRegions);
 
 namespace {
 
-/// 1 on the vertices of one region. Throws UsageError where there is no such region.
+/// Field that is 1 on the vertices of one region. Throws UsageError if there is no such region.
 Field mask_of(const Regions& regions, int index) {
   const int count = static_cast<int>(regions.regions.size());
   if (index >= count) {

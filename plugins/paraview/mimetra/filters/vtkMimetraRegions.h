@@ -5,14 +5,14 @@
 
 #include "plugins/paraview/mimetra/filters/vtkMimetraFilter.h"
 
-/// Regions of interest as fields on the input. A class of its own because regions are neither a
-/// sequence nor fields, one of them can be picked, and the components are kept while it is another.
+/// Regions of interest as fields on the input. This needs a class of its own because regions are
+/// neither a sequence nor fields. Picking another region keeps the components.
 class MIMETRAFILTERS_EXPORT vtkMimetraRegions : public vtkMimetraFilter {
  public:
   vtkTypeMacro(vtkMimetraRegions, vtkMimetraFilter);
   static vtkMimetraRegions* New();
 
-  /// The region whose vertices are 1 in the point data `displayed_region`; -1 for none.
+  /// Region whose vertices are 1 in the point data `displayed_region`; -1 for none.
   vtkSetMacro(DisplayedRegion, int);
   vtkGetMacro(DisplayedRegion, int);
 

@@ -6,8 +6,8 @@
 
 #include "plugins/paraview/mimetra/filters/vtkMimetraAlgorithm.h"
 
-/// Reads a sequence or model of any format, with its times. On a server of several processes the
-/// first one reads it, and has the mesh; the others know the times.
+/// Reads a sequence or model of any format, with its times. On a server of several processes, the
+/// first one reads the file and has the mesh; the others know only the times.
 class MIMETRAFILTERS_EXPORT vtkMimetraSequence : public vtkMimetraAlgorithm {
  public:
   vtkTypeMacro(vtkMimetraSequence, vtkMimetraAlgorithm);
@@ -22,12 +22,12 @@ class MIMETRAFILTERS_EXPORT vtkMimetraSequence : public vtkMimetraAlgorithm {
                   vtkInformationVector* outputs) override;
 
  private:
-  /// Returns its times, none where it stands still.
+  /// Reads the file. Returns its times, or none for a single frame.
   std::vector<double> read();
-  /// By all processes: the first one reads, all know its times.
+  /// Collective. The first process reads, and all learn the times.
   void read_by_first();
 
-  vtkNew<vtkPolyData> mesh_;  ///< what all frames share
+  vtkNew<vtkPolyData> mesh_;  ///< shared by all frames
   std::vector<double> times_;
   vtkMTimeType read_at_ = 0;
 };

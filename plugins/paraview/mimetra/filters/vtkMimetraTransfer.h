@@ -5,8 +5,9 @@
 
 #include "plugins/paraview/mimetra/filters/vtkMimetraFilter.h"
 
-/// The deformation of what comes in at port 0 on a target: a mesh at port 1, or a model's file. A
-/// class of its own because the target is what moves, with its own data and the regions on it.
+/// Deformation of the mesh at port 0, applied to a target: a mesh at port 1, or a model's file.
+/// This needs a class of its own because the output is the target, with its own data and the
+/// regions on it.
 class MIMETRAFILTERS_EXPORT vtkMimetraTransfer : public vtkMimetraFilter {
  public:
   vtkTypeMacro(vtkMimetraTransfer, vtkMimetraFilter);
@@ -21,7 +22,7 @@ class MIMETRAFILTERS_EXPORT vtkMimetraTransfer : public vtkMimetraFilter {
             vtkInformationVector* outputs) override;
 
  private:
-  /// The target, or for a model of a file the input, on whose faces it is.
+  /// The target, or the input if the target is a file, whose model has the input's faces.
   vtkPolyData& shown_mesh(vtkPolyData& input) const;
 
   vtkNew<vtkPolyData> fields_;
