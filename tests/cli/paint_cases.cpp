@@ -35,7 +35,7 @@ BadInput on_textured_patch(const std::string& kind, const std::string& bytes, in
                            std::vector<std::string> says) {
   const auto make = [bytes](const fs::path& folder) {
     write_bytes_to(folder / "p.png", bytes);
-    for (const char* const height : {"0", "0.5"}) {
+    for (const char* const height : {"0", "1"}) {
       write_bytes_to(folder / "patch" / (std::string(height) + ".obj"),
                      "v 0 0 0\nv 1 0 0\nv 1 1 " + std::string(height) +
                          "\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 "

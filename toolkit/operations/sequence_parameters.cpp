@@ -12,10 +12,9 @@ BoundParameters<SequenceSource> frame_parameters() {
 
 BoundParameters<SequenceSource> weight_scale_parameter() {
   BoundParameters<SequenceSource> list;
-  return list
-      .add("weight-scale", SequenceSource::kWeightScale,
-           "factor of the weights, as 0.01 for percent; without it, weights above 2 are refused")
-      .brief("factor of the weights, as 0.01 for percent");
+  return list.add(
+      "weight-scale", SequenceSource::kWeightScale,
+      "factor of the weights, as 0.01 for percent; without it, weights above 2 are refused");
 }
 
 BoundParameters<SequenceSource> sequence_parameters() {
