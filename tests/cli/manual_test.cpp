@@ -62,7 +62,7 @@ TEST_F(Manual, FormatsInTheDocumentsAreUpToDate) {
 TEST_F(Manual, CompletionOffersCommandsOptionsChoicesAndFilesThatCanBeRead) {
   ASSERT_EQ(run("completion --shell bash > completion.bash").code, 0);
   EXPECT_EQ(offered("mimetra trans"), "transfer\n");
-  EXPECT_EQ(offered("mimetra transfer --wei"), "--weights-out --weights\n");
+  EXPECT_EQ(offered("mimetra transfer --weights"), "--weights-out --weights\n");
   EXPECT_EQ(offered("mimetra transfer --space b"), "blendshape\n");
   EXPECT_THAT(offered("mimetra transfer --weights take"), HasSubstr("take.csv"));
   EXPECT_THAT(offered("mimetra transfer he"), HasSubstr("head"));
