@@ -27,7 +27,7 @@ MOST_ROWS = 8
 INPUTS = {"regions": ["sequence"], "transfer": ["source", "target"]}
 FIRST = {"regions": ["k", "radius", "region", "coverage"],
          "transfer": ["k", "radius", "coverage", "full", "space", "source-rest"]}
-READING = ["weights", "topology", "frames", "fps"]
+READING = ["weights", "weight-scale", "topology", "frames", "fps"]
 OF_FILES = [*READING, "format", "double", "single", "compress"]
 PLY_TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4",
              "float": "f4", "double": "f8"}

@@ -13,7 +13,8 @@ FILTERS = {"regions": "RegionsofInterest", "decompose": "SparseComponents",
 # ParaView saves what it shows itself, and draws it; markers are a file that people edit.
 LEFT_OUT = {"convert", "render", "markers"}
 # What a pipeline knows by itself, and what only files take.
-OF_FILES = {"weights", "topology", "frames", "fps", "compress", "format", "double", "single"}
+OF_FILES = {"weights", "weight-scale", "topology", "frames", "fps", "compress", "format", "double",
+            "single"}
 
 
 class Plugin(HostTest):
