@@ -248,6 +248,10 @@ TEST_F(OrderOfFrames, OfTimesWithoutAPointInSomeIsRefused) {
   const std::string glob = (folder_ / "t_*.obj").string();
   EXPECT_THAT(test::message_of<IoError>([&] { frames_of_pattern(glob); }),
               HasSubstr("comes before"));
+  // A number that is too large to count.
+  write_alone({"t_0.5", "t_0.10000000000000000555"});
+  EXPECT_THAT(test::message_of<IoError>([&] { frames_of_pattern(glob); }),
+              testing::EndsWith("as many digits behind the point"));
 }
 
 TEST_F(OrderOfFrames, IsAskedOfThoseThatAreTakenOnly) {

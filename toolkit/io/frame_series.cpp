@@ -50,12 +50,15 @@ void check_numbers(const std::vector<fs::path>& frames) {
 void check_order(const std::vector<fs::path>& frames) {
   const auto unclear = unclear_order(frames);
   if (!unclear) return;
-  const fs::path pattern = unclear->second.parent_path() / pattern_of(numbered(unclear->second));
+  const NumberedName name = numbered(unclear->second);
+  const fs::path folder = unclear->second.parent_path();
   throw IoError(unclear->second.string(),
                 "comes before " + unclear->first.filename().string() +
                     " if their numbers are decimal, and behind it if not; give all names as many "
-                    "digits behind the point, or name whole numbers by a pattern, '" +
-                    pattern.string() + "'");
+                    "digits behind the point" +
+                    (name.series.empty() ? ""
+                                         : ", or name whole numbers by a pattern, '" +
+                                               (folder / pattern_of(name)).string() + "'"));
 }
 
 /// Returns "7" or "12 to 15".

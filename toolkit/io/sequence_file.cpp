@@ -69,8 +69,8 @@ OpenSequence open_path(const fs::path& path, const SequenceSource& source, const
 void check_digits(const std::string& text) {
   const fs::path file(text);
   const std::string name = file.filename().string();
-  const bool has_sign = name.find_first_of("#@$[{") != std::string::npos;
-  if (!has_sign || !is_mesh_extension(file.extension().string())) return;
+  const bool has_placeholder = name.find_first_of("#@$[{") != std::string::npos;
+  if (!has_placeholder || !is_mesh_extension(file.extension().string())) return;
   const fs::path pattern = file.parent_path() / ("frame_%04d" + file.extension().string());
   throw IoError(text, "no such file or folder; numbered files are named by a pattern such as '" +
                           pattern.string() + "'");

@@ -11,7 +11,8 @@ namespace mimetra {
 BoundParameters<SequenceSource> frame_parameters();
 /// --weight-scale.
 BoundParameters<SequenceSource> weight_scale_parameter();
-/// All parameters for reading a sequence: --weights, --topology, --frames and --fps.
+/// All parameters for reading a sequence: --weights, --weight-scale, --topology, --frames and
+/// --fps.
 BoundParameters<SequenceSource> sequence_parameters();
 /// --double for mesh files, --single for arrays, and --format for folders, which also have
 /// --double.
