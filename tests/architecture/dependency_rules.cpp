@@ -251,7 +251,7 @@ class CircleSearch {
   std::set<fs::path> done_;
 };
 
-/// What a folder's CMakeLists.txt installs.
+/// Headers that a folder's CMakeLists.txt installs.
 std::set<fs::path> public_headers(const Tree& lists) {
   static const std::regex headers(R"re(HEADERS\s+((?:[\w/]+\.h\s*)+))re");
   static const std::regex word(R"re(\S+)re");
@@ -313,7 +313,7 @@ const std::vector<FolderRule>& folder_rules() {
         {"c", "plugins/c", with(up_to_operations, {"fitting", "samples"}), {"JSON"}},
         {"interface", "plugins/pictures", with(up_to_report, {"fitting", "samples", "c"})},
         {"programs", "samples", with(up_to_report, {"fitting", "samples"}), {}, true},
-        // What third parties write, who have nothing but the C header.
+        // Plugins of third parties, which know only the C header.
         {"plugin", "samples/plugin", {"c"}},
         {"cli",
          "toolkit/cli",
@@ -349,7 +349,7 @@ std::vector<std::string> include_errors(const fs::path& file, const std::string&
 }
 
 std::vector<std::string> link_errors(const fs::path& file, const std::string& text) {
-  // What a generator expression, $<LINK_ONLY:dlib::dlib>, stands for is a word of its own.
+  // The target in a generator expression, $<LINK_ONLY:dlib::dlib>, is a separate word.
   static const std::regex word(R"re((?:[^\s()"<>$:]|::|\$\{)+)re");
   const FolderRule* rule = rule_for(file);
   if (!rule) return {};
@@ -373,7 +373,7 @@ std::vector<std::string> path_errors(const Tree& sources) {
       if (!target) continue;
       const std::string start = place(file, include.line) + include.header + ": ";
       if (!sources.contains(*target)) errors.push_back(start + "is not a file of the tree");
-      // What a test of users' programs has for itself is in no installation.
+      // Files that only a test of users' programs includes are not installed.
       const bool as_user = is_users_program(file) && !is_inside(*target, "tests");
       if (as_user ? include.is_as_installed() : include.quoted) continue;
       const std::string path = target->generic_string();

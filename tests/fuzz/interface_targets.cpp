@@ -195,7 +195,7 @@ mimetra_data* changed(Bytes& bytes, Handles& held, int kind) {
   return *made;
 }
 
-/// All that can be asked of a value; it is written, too.
+/// Reads everything of a value, and writes it.
 void look_at(Bytes& bytes, mimetra_data* data, const fs::path& folder) {
   static constexpr std::array<const char*, 13> kExtensions = {
       "/",     ".npy", ".npz", ".pc2", ".mdd",  ".h5",    ".glb",

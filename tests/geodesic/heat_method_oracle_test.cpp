@@ -180,8 +180,8 @@ TEST(HeatOperators, AreThoseOfCgalOnTheIntrinsicDelaunayTriangulation) {
   }
 }
 
-/// On meshes of CGAL's own. What is left is rounding, 1e-16 times the conditions of the heat step
-/// and of the Poisson system, each below 1e4 for some thousand triangles.
+/// CGAL runs on its own mesh class. The difference is rounding: 1e-16 times the condition numbers
+/// of the heat step and of the Poisson system, each below 1e4 for some thousand triangles.
 TEST(HeatGeodesics, AreThoseOfCgalOnItsOwnMesh) {
   constexpr double kConditions = 1e-9;
   for (const Shape& shape : {test::bumpy_sphere(4), sheet()}) {

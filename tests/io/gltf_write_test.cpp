@@ -24,7 +24,7 @@ using test::TemporaryFolder;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// A sphere with two expressions, one of which moves a few vertices only.
+/// A sphere with two expressions; the second moves only a few vertices.
 std::shared_ptr<const BlendshapeModel> smiling_sphere() {
   const TriMesh mesh = test::mesh_of(test::sphere(2));
   const Eigen::Index size = mesh.positions.size();
@@ -41,7 +41,7 @@ Animation performance() {
   return {smiling_sphere(), weights, Eigen::Vector3d(0.25, 0.75, 2)};
 }
 
-/// Frames of a grid of quads, each of which turns about a corner.
+/// Frames of a grid of quads. Each quad turns about a corner.
 MeshSequence quads(int frames) {
   const test::Shape grid = test::grid(4, 4);
   Polygons polygons;
@@ -314,8 +314,7 @@ TEST(GltfText, TextureCoordinatesThatNoCornerHasAreNotWritten) {
   EXPECT_THAT(parts_left_out(sequence_format("a.glb")->holds, sequence), testing::IsEmpty());
 }
 
-/// Weights of which few are not 0 take few bytes, and every target has bounds, as the specification
-/// wants it.
+/// Sparse weights take few bytes, and every target has bounds, as the specification requires.
 TEST(GltfText, HoldsWhatTheSpecificationAsksFor) {
   TemporaryFolder folder;
   const int frames = 300;

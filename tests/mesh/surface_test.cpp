@@ -60,7 +60,7 @@ std::map<std::pair<int, int>, std::vector<int>> faces_at_edges(const Triangles& 
   return faces;
 }
 
-/// What is promised of any mesh, by looking at each face, edge and vertex.
+/// Checks the promises for any mesh at each face, edge and vertex.
 void expect_sound(const Surface& surface, const Triangles& triangles) {
   const Surface::HalfEdges& mesh = surface.half_edges();
   ASSERT_EQ(mesh.n_faces(), std::size_t(triangles.rows()));
@@ -222,7 +222,7 @@ TEST(Surface, CrossesSeamsThatAreWelded) {
   EXPECT_EQ(std::ranges::count_if(surface.half_edges().edges(),
                                   [](const auto& e) { return e.is_boundary(); }),
             2 * (4 + 3));
-  EXPECT_THAT(surface.neighbors(12), IsEmpty());  // vertex 2 stands for it
+  EXPECT_THAT(surface.neighbors(12), IsEmpty());  // vertex 2 is its representative
   EXPECT_THAT(surface.neighbors(2), testing::Contains(13));
 }
 
