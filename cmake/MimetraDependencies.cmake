@@ -46,10 +46,15 @@ if(MIMETRA_VTK)
   endif()
   find_package(GLEW REQUIRED)
   find_package(OpenGL REQUIRED COMPONENTS EGL)
-  set(vtk_files CommonCore CommonDataModel IOCore IOXML IOXMLParser)
+  set(vtk_files CommonCore CommonDataModel FiltersCore IOCore)
   set(vtk_rendering ChartsCore IOImage RenderingContext2D RenderingContextOpenGL2 RenderingCore
                     RenderingFreeType RenderingOpenGL2)
-  find_package(VTK 9.1 REQUIRED COMPONENTS ${vtk_files} ${vtk_rendering})
+  set(vtk_oracles)
+  if(BUILD_TESTING)
+    # Tests compare with VTK's own readers and writers.
+    set(vtk_oracles IOLegacy IOXML)
+  endif()
+  find_package(VTK 9.1 REQUIRED COMPONENTS ${vtk_files} ${vtk_rendering} ${vtk_oracles})
   # Objects compiled against one VTK break with another one's libraries.
   set(same_vtk VTK ${VTK_VERSION} EXACT HINTS ${VTK_DIR})
   set(MIMETRA_FIND_VTK ${same_vtk} COMPONENTS ${vtk_files})

@@ -86,7 +86,7 @@ std::vector<BadInput> hdf5_cases() {
       3, {"'times' is 3, expected 2"});
   add("without_faces", changed([](Parts& p) { p.tris.clear(); }), 3, {"--topology"});
   add("a_folder", [](const fs::path& folder) { fs::create_directory(folder / "s.h5"); }, 3,
-      {"holds no OBJ, PLY, OFF, STL or OM file"});
+      {"holds no PLY, OBJ, OFF, STL or OM file"});
   return all;
 }
 

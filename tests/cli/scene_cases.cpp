@@ -111,7 +111,7 @@ void add_gltf_cases(std::vector<BadInput>& all) {
   add("nodes_in_a_circle", scene(R"({"mesh": 0})", R"({"mesh": 0, "children": [0]})"), 3,
       {"nodes must form a tree"});
   add("a_folder", [](const fs::path& folder) { fs::create_directory(folder / "s.glb"); }, 3,
-      {"holds no OBJ, PLY, OFF, STL or OM file"});
+      {"holds no PLY, OBJ, OFF, STL or OM file"});
 }
 
 /// Named for what they are, with a way out.

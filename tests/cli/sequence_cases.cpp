@@ -114,7 +114,7 @@ std::vector<BadInput> sequence_cases() {
   add_stray_files(all);
   const auto empty_folder = [](const fs::path& folder) { fs::create_directory(folder / "none"); };
   add_case(all, "empty_folder", "frames", empty_folder, "info none", 3,
-           {"none: holds no OBJ, PLY, OFF, STL or OM file"});
+           {"none: holds no PLY, OBJ, OFF, STL or OM file"});
   add_case(all, "missing", "frames", {}, "info nowhere", 3, {"nowhere", "no such"});
   add_case(all, "pattern_without_match", "frames", {}, "info 'no_%04d.obj'", 3,
            {"no_%04d.obj: matches no"});

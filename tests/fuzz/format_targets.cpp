@@ -17,6 +17,20 @@ namespace {
 const std::map<std::string, std::vector<std::string>>& texts() {
   static const std::map<std::string, std::vector<std::string>> all = {
       {"regions_txt", {"3\n4\n5\n", "0\n0\n1\n1\n0\n0\n0\n0\n0\n"}},
+      {"sequence_vtu",
+       {"# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n0 0 0 1 0 0 0 1 "
+        "0\n"
+        "POLYGONS 1 4\n3 0 1 2\nPOINT_DATA 3\nSCALARS a float\nLOOKUP_TABLE default\n1 2 3\n",
+        "# vtk DataFile Version 5.1\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 double\n"
+        "0 0 0 1 0 0 0 1 0\nCELLS 2 3\nOFFSETS vtktypeint64\n0 3\nCONNECTIVITY vtktypeint64\n"
+        "0 1 2\nCELL_TYPES 1\n5\n",
+        "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"3\" "
+        "NumberOfCells=\"1\"><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\">"
+        "0 0 0 1 0 0 0 1 0</DataArray></Points><Cells>"
+        "<DataArray type=\"Int32\" Name=\"connectivity\">0 1 2</DataArray>"
+        "<DataArray type=\"Int32\" Name=\"offsets\">3</DataArray>"
+        "<DataArray type=\"UInt8\" Name=\"types\">5</DataArray></Cells></Piece>"
+        "</UnstructuredGrid></VTKFile>"}},
       {"landmarks_pts", {"version: 1\nn_points: 3\n{\n1 2\n3.5 4\n5 6e1\n}\n"}},
       {"landmarks_csv", {"time,x0,y0,x1,y1\n0,1,2,3,4\n0.04,1,2,3,4\n"}},
       {"landmarks_json",

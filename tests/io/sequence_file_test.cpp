@@ -184,11 +184,11 @@ TEST(ReadSequence, SaysWhatIsMissing) {
   EXPECT_EQ(message_of<IoError>([&] { read_sequence((folder / "none").string()); }),
             (folder / "none").string() + ": no such file or folder");
   EXPECT_THAT(message_of<IoError>([&] { read_sequence(folder.path().string()); }),
-              HasSubstr("holds no OBJ, PLY, OFF, STL or OM file"));
+              HasSubstr("holds no PLY, OBJ, OFF, STL or OM file"));
   EXPECT_THAT(message_of<IoError>([&] { read_sequence((folder / "*.obj").string()); }),
-              HasSubstr("matches no OBJ, PLY, OFF, STL or OM file"));
+              HasSubstr("matches no PLY, OBJ, OFF, STL or OM file"));
   EXPECT_THAT(message_of<IoError>([&] { read_sequence((folder / "f_%04d.obj").string()); }),
-              HasSubstr("matches no OBJ, PLY, OFF, STL or OM file"));
+              HasSubstr("matches no PLY, OBJ, OFF, STL or OM file"));
   const std::string too_long(5000, 'a');
   EXPECT_THROW(read_sequence((folder / too_long).string()), IoError);
   EXPECT_THROW(read_sequence((folder / too_long).string() + "@a=1"), IoError);

@@ -91,7 +91,7 @@ TEST_F(VtpFields, ThatALaterFrameDoesNotHaveSoAreLeftOut) {
 
 TEST_F(VtpFields, OfAChosenFrameAreItsOwn) {
   write(4, [](int frame) { return with_heat(10 * frame); });
-  const Read found = read({.selected = [](int) { return std::vector<int>{2}; }});
+  const Read found = read({.source = {.frames = "2:3"}});
   EXPECT_THAT(found.notes, IsEmpty());
   EXPECT_TRUE(found.series.fields.at(2).values == Eigen::VectorXd::Constant(5, 20));
 }

@@ -14,7 +14,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-/// Files that would make VTK crash, ask for all memory, or wait.
+/// Damaged files, and files with sizes that cannot be true.
 class VtpHostile : public VtpTest {
  protected:
   std::string refusal_of(const std::string& name, const std::string& text) const {
@@ -54,7 +54,7 @@ TEST_F(VtpHostile, EntitiesAreRefused) {
   EXPECT_THAT(refusal_of("b.pvd", "<VTKFile a=\"&c;\"/>"), HasSubstr("'&c'"));
 }
 
-TEST_F(VtpHostile, TypesThatVtkDoesNotKnowAreNamed) {
+TEST_F(VtpHostile, UnknownTypesAreNamed) {
   EXPECT_THAT(refusal_with("type=\"Float32\" Name=\"roi\"", "type=\"Float63\" Name=\"roi\""),
               AllOf(HasSubstr("array 'roi'"), HasSubstr("'Float63'")));
   EXPECT_THAT(refusal_with("type=\"PolyData\"", "type=\"ImageData\""), HasSubstr("ImageData"));
@@ -69,12 +69,14 @@ TEST_F(VtpHostile, TypesThatVtkDoesNotKnowAreNamed) {
 
 TEST_F(VtpHostile, CountsBeyondTheFileAreRefusedBeforeMemoryIsAskedFor) {
   EXPECT_THAT(refusal_with("NumberOfPoints=\"3\"", "NumberOfPoints=\"2000000000\""),
-              HasSubstr("NumberOfPoints: 2000000000 is more"));
+              HasSubstr("expected 2000000000 tuples, found 3"));
+  EXPECT_THAT(refusal_with("NumberOfPoints=\"3\"", "NumberOfPoints=\"3000000000\""),
+              HasSubstr("NumberOfPoints: 3000000000 is more than can be numbered"));
   EXPECT_THAT(refusal_with("NumberOfPolys=\"1\"", "NumberOfPolys=\"-1\""), HasSubstr("'-1'"));
   EXPECT_THAT(refusal_with("Name=\"roi\"", "NumberOfComponents=\"99999\" Name=\"roi\""),
               HasSubstr("NumberOfComponents"));
   EXPECT_THAT(refusal_with("NumberOfComponents=\"3\"", "NumberOfComponents=\"2\""),
-              HasSubstr("expected 3 components"));
+              HasSubstr("tuples"));
 }
 
 TEST_F(VtpHostile, BlocksThatAreLargerThanTheFileAreRefused) {
@@ -96,14 +98,6 @@ TEST_F(VtpHostile, BlocksThatUnpackToFarMoreThanTheFileAreRefused) {
   EXPECT_THAT(refusal_of("a.vtp", text), HasSubstr("would take more than 300 MB"));
 }
 
-TEST_F(VtpHostile, ThousandsOfAttributesAreRefused) {
-  std::string attributes;
-  for (int i = 0; i < 1000; ++i) attributes += "a" + std::to_string(i) + "=\"\" ";
-  EXPECT_THAT(refusal_with("Name=\"roi\"", attributes + "Name=\"roi\""),
-              HasSubstr("DataArray has 1003 attributes, expected at most 100"));
-}
-
-/// VTK would look for the last of them before the first.
 TEST_F(VtpHostile, NoBlocksOfWhichTheLastHoldsSomethingAreRefused) {
   const std::string compressed = "compressor=\"vtkLZ4DataCompressor\" header_type";
   const auto refusal = [&](const std::string& sizes) {
@@ -115,15 +109,9 @@ TEST_F(VtpHostile, NoBlocksOfWhichTheLastHoldsSomethingAreRefused) {
   };
   EXPECT_THAT(refusal("AAAAAACAAAAMAAAA"),
               AllOf(HasSubstr("array 'roi'"), HasSubstr("sizes of its blocks")));
-  // VTK reads on where base64 ends within four characters.
   for (const char* cut : {"AAAA", "A=AAAACAAAAMAAAA"}) {
     EXPECT_THAT(refusal(cut), HasSubstr("truncated"));
   }
-}
-
-/// VTK would take what follows for the values of the array.
-TEST_F(VtpHostile, TheEndOfATagWithinAValueIsRefused) {
-  EXPECT_THAT(refusal_with("Name=\"roi\"", "Name=\"roi>/////w==\""), HasSubstr("no '<' or '>'"));
 }
 
 TEST_F(VtpHostile, OffsetsOfFacesThatDoNotFitAreRefused) {
@@ -134,7 +122,6 @@ TEST_F(VtpHostile, OffsetsOfFacesThatDoNotFitAreRefused) {
   }
 }
 
-/// VTK asks for as many corners as the last offset says: 8 GB here.
 TEST_F(VtpHostile, OffsetsThatEndBehindTheCornersAreRefusedHoweverTheyAreStored) {
   struct Stored {
     std::string header, format, sound, wrong;  ///< 3 and 2000000000
@@ -169,12 +156,11 @@ TEST_F(VtpHostile, OffsetsThatEndBehindTheCornersAreRefusedHoweverTheyAreStored)
         << each.header << each.sound;
     EXPECT_THAT(refusal_of("a.vtp", with(each.wrong)),
                 AllOf(HasSubstr("Polys, array 'offsets': ends at 2000000000"),
-                      HasSubstr("3 corners at most")))
+                      HasSubstr("there are 3 corners")))
         << each.header << each.wrong;
   }
 }
 
-/// VTK stops there, and leaves the values behind as they were in memory.
 TEST_F(VtpHostile, GapsInBase64AreRefused) {
   // 12 bytes: 0, 1 and 1 in single precision.
   const std::string sound = "DAAAAAAAAAAAAIA/AACAPw==";

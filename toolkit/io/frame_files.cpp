@@ -133,11 +133,19 @@ std::vector<fs::path> files_of_pattern(const std::string& pattern) {
   return field ? files_of_printf(pattern, *field) : files_of_glob(pattern);
 }
 
-/// Keeps mesh files only, in natural order. Throws IoError if there are none.
+/// Returns "matches no OBJ or PLY file".
+std::string nothing_of(const std::string& verb, const std::vector<std::string>& extensions) {
+  std::vector<std::string> names;
+  for (const std::string& extension : extensions) names.push_back(upper_case(extension.substr(1)));
+  return verb + " no " + joined(names, ", ", " or ") + " file";
+}
+
+/// Keeps files with the extensions, in natural order. Throws IoError if there are none.
 std::vector<fs::path> mesh_files(std::vector<fs::path> files, const std::string& name,
+                                 const std::vector<std::string>& extensions,
                                  const std::string& nothing) {
   std::erase_if(files, [&](const fs::path& file) {
-    return !is_mesh_extension(file.extension().string()) ||
+    return std::ranges::find(extensions, lower_extension(file)) == extensions.end() ||
            (is_companion(file) && !is_companion(name));
   });
   if (files.empty()) throw IoError(name, nothing);
@@ -245,6 +253,12 @@ std::vector<fs::path> files_named(const std::string& text) {
   return files;
 }
 
+std::set<std::string> extensions_named(const std::string& text) {
+  std::set<std::string> extensions;
+  for (const fs::path& file : files_named(text)) extensions.insert(lower_extension(file));
+  return extensions;
+}
+
 std::string note_on_digits(const std::string& pattern) {
   const std::vector<fs::path> all = files_of_any_digits(pattern);
   if (all.empty()) return "";
@@ -262,9 +276,10 @@ std::string note_on_digits(const std::string& pattern) {
          "' to take all";
 }
 
-FrameSeries frames_of_pattern(const std::string& pattern) {
+FrameSeries frames_of_pattern(const std::string& pattern,
+                              const std::vector<std::string>& extensions) {
   std::vector<fs::path> files = files_of_pattern(pattern);
-  std::string nothing = "matches no OBJ, PLY, OFF, STL or OM file";
+  std::string nothing = nothing_of("matches", extensions);
   if (files.empty()) {
     if (const std::vector<fs::path> near = files_of_any_digits(pattern); !near.empty()) {
       throw IoError(pattern, "matches no file; '" + fitting_pattern(pattern, near) + "' matches " +
@@ -275,8 +290,8 @@ FrameSeries frames_of_pattern(const std::string& pattern) {
         !printf_field(pattern) && number_field(fs::path(pattern).filename().string());
     if (is_both) nothing += "; beside '*' or '?' write '*' in the place of the number, too";
   }
-  FrameSeries found = series_of_pattern(mesh_files(std::move(files), pattern, nothing), pattern,
-                                        printf_field(pattern).has_value());
+  FrameSeries found = series_of_pattern(mesh_files(std::move(files), pattern, extensions, nothing),
+                                        pattern, printf_field(pattern).has_value());
   check_one_format(found.frames, pattern, "matches");
   if (std::string note = note_on_digits(pattern); !note.empty()) {
     found.notes.push_back(std::move(note));
@@ -284,10 +299,10 @@ FrameSeries frames_of_pattern(const std::string& pattern) {
   return found;
 }
 
-FrameSeries frames_of_folder(const fs::path& folder) {
+FrameSeries frames_of_folder(const fs::path& folder, const std::vector<std::string>& extensions) {
   const std::string name = folder.string();
   FrameSeries found = series_in_folder(
-      mesh_files(files_in(folder), name, "holds no OBJ, PLY, OFF, STL or OM file"), folder);
+      mesh_files(files_in(folder), name, extensions, nothing_of("holds", extensions)), folder);
   check_one_format(found.frames, name, "holds");
   check_one_series(found.frames, folder);
   check_are_numbered(found.frames, folder);

@@ -2,10 +2,12 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "toolkit/io/frame_series.h"
+#include "toolkit/io/mesh_formats.h"
 
 /// Files and frames that the name of a sequence refers to.
 namespace mimetra {
@@ -25,21 +27,28 @@ bool is_frame_pattern(const std::string& text);
 /// none. They are in natural order. Throws IoError if the folder cannot be read.
 std::vector<std::filesystem::path> files_named(const std::string& text);
 
+/// Extensions of files_named() in lower case.
+std::set<std::string> extensions_named(const std::string& text);
+
 /// Note on a printf pattern that matches some files and leaves out others with more or fewer
 /// digits. The note suggests a pattern that takes all. Returns "" for other patterns.
 std::string note_on_digits(const std::string& pattern);
 
-/// Returns the mesh files that match a glob or printf pattern, in natural order. Skips rest poses
-/// and topologies of other sequences, unless the pattern ends in their suffix. Throws IoError if no
-/// file matches; the message suggests a pattern for files with other digits. Also throws it for
-/// several formats, two files of one number, an unclear order, or a dangling link.
-FrameSeries frames_of_pattern(const std::string& pattern);
+/// Returns the files with these extensions that match a glob or printf pattern, in natural order.
+/// Skips rest poses and topologies of other sequences, unless the pattern ends in their suffix.
+/// Throws IoError if no file matches; the message suggests a pattern for files with other digits.
+/// Also throws it for several formats, two files of one number, an unclear order, or a dangling
+/// link.
+FrameSeries frames_of_pattern(const std::string& pattern,
+                              const std::vector<std::string>& extensions = mesh_extensions());
 
-/// Returns the mesh files of a folder in natural order. Skips hidden files, companions of other
-/// sequences, `neutral.*`, and files outside the numbered series that most files belong to. Throws
-/// as frames_of_pattern(). Also throws IoError if there are several numbered series and none has
-/// most of the files. Throws MismatchError if at least half of the files have no frame numbers.
-FrameSeries frames_of_folder(const std::filesystem::path& folder);
+/// Returns the files of a folder with these extensions in natural order. Skips hidden files,
+/// companions of other sequences, `neutral.*`, and files outside the numbered series that most
+/// files belong to. Throws as frames_of_pattern(). Also throws IoError if there are several
+/// numbered series and none has most of the files. Throws MismatchError if at least half of the
+/// files have no frame numbers.
+FrameSeries frames_of_folder(const std::filesystem::path& folder,
+                             const std::vector<std::string>& extensions = mesh_extensions());
 
 /// Frames that the folder would have if it contained only files of this extension; maybe none.
 /// Reports nothing odd about them.

@@ -67,6 +67,8 @@ struct Format {
   /// Reads a value; empty for formats that are only written. Throws IoError, MismatchError,
   /// Cancelled.
   std::function<ReadValue(const std::string& text, const ReadRequest&, const Context&)> read = {};
+  /// Files with a number in their name are frames of one sequence, also in a folder.
+  bool numbered = false;
   /// Parameters for writing.
   std::vector<Parameter> writing = {};
   /// Writes a value atomically and returns the files; empty for formats that are only read. Throws

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/frame_files.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/whole_file.h"
@@ -200,6 +201,25 @@ std::vector<Parameter> OperationTable::parameters_of(const Operation& operation)
   return parameters;
 }
 
+namespace {
+
+/// Format of the numbered frames in a folder without mesh files; null for other texts.
+const Format* format_of_frames(const std::vector<Format>& formats, DataKind kind,
+                               const std::string& text) {
+  std::error_code unreadable;
+  const bool is_folder = std::filesystem::is_directory(text, unreadable);
+  if (!is_folder && !is_frame_pattern(text)) return nullptr;
+  const std::set<std::string> named = extensions_named(text);
+  if (std::ranges::any_of(named, is_mesh_extension)) return nullptr;
+  const auto found = std::ranges::find_if(formats, [&](const Format& format) {
+    return format.numbered && format.kind == kind &&
+           std::ranges::any_of(named, [&](const auto& each) { return format.has(each); });
+  });
+  return found == formats.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
 const Format& OperationTable::reader(DataKind kind, const std::string& text) const {
   const std::string extension = lower_extension(text);
   const Format *folder = nullptr, *any_file = nullptr;
@@ -217,7 +237,10 @@ const Format& OperationTable::reader(DataKind kind, const std::string& text) con
   const std::string expected = name + " can be read from " + listed_extensions(known);
   std::error_code unreadable;
   if (!folder) throw UsageError(text + ": " + expected);
-  if (!std::filesystem::is_regular_file(text, unreadable)) return *folder;
+  if (!std::filesystem::is_regular_file(text, unreadable)) {
+    const Format* numbered = format_of_frames(formats_, kind, text);
+    return numbered ? *numbered : *folder;
+  }
   const std::string found = foreign_file(text);
   throw IoError(text, (found.empty() ? "" : "is " + found + ". ") + expected + ", not from '" +
                           extension + "'");

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "toolkit/io/frame_files.h"
 #include "toolkit/io/regions_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
@@ -52,14 +51,12 @@ std::vector<std::filesystem::path> write_sequence_data(const Data& data,
 ReadValue read_sequence_data(const std::string& text, const ReadRequest& request,
                              const Context& context) {
   const SequenceSource source = frame_parameters().read(request.parameters);
-  const auto selected = [&](int count) { return selected_frames(source.frames, count); };
   std::vector<std::string> notes;
   const Context noting =
       context.with_notes([&](const Note& note) { notes.push_back(text + ": " + note.text); });
-  const VtpReadOptions options{.selected = selected, .fields = request.fields};
+  const VtpReadOptions options{.source = source, .fields = request.fields};
   FieldSequence read = request.may_stream ? open_vtp_series(text, options, noting)
                                           : read_vtp_series(text, options, noting);
-  check_rate(text, read.frames->known_times(), source);
   // The steps between selected frames may differ.
   const std::string odd = source.frames ? "" : note_on_steps(read.frames->known_times());
   if (!odd.empty()) noting.note(odd);
@@ -106,10 +103,18 @@ void add_vtp(OperationTable& table) {
                   return HeldParts{.polygons = true, .exact_positions = false};
                 }};
   table.add(series);
-  series.name = "VTK mesh of one frame";
+  series.name = "VTK mesh, or numbered ones";
   series.extensions = {".vtp"};
+  series.numbered = true;
   table.add(series);
-  table.add(Format{.name = "list of .vtp files",
+  table.add(Format{.name = "VTK grid of polygons, or legacy VTK mesh",
+                   .kind = DataKind::sequence,
+                   .extensions = {".vtu", ".vtk"},
+                   .reading = reading,
+                   .read = read_sequence_data,
+                   .numbered = true,
+                   .fields = true});
+  table.add(Format{.name = "list of .vtp, .vtu or .vtk files",
                    .kind = DataKind::sequence,
                    .extensions = {".series"},
                    .reading = reading,

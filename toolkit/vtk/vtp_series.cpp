@@ -1,16 +1,20 @@
 #include "toolkit/vtk/vtp_series.h"
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
-#include <memory>
-#include <mutex>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
 #include <vtkPolyData.h>
-#include <vtkXMLPolyDataWriter.h>
+#include <vtkTypeInt32Array.h>
 
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/whole_file.h"
@@ -19,6 +23,7 @@
 #include "toolkit/mesh/text.h"
 #include "toolkit/vtk/poly_data.h"
 #include "toolkit/vtk/silent_vtk.h"
+#include "toolkit/vtk/vtk_array.h"
 
 namespace mimetra {
 namespace {
@@ -52,80 +57,71 @@ void check(const FieldSequence& fields) {
   }
 }
 
-/// A mesh as vtkPolyData. Only its points and displacements change from frame to frame.
-class FrameData {
+/// Texts of the .vtp files of a sequence. What the frames share is encoded once. VTK's writer is
+/// not used: it encodes all arrays for each file, and its text depends on the files before.
+class VtpTexts {
  public:
-  explicit FrameData(const FieldSequence& fields) : fields_(fields) {
+  VtpTexts(const FieldSequence& fields, VtpCompression compression)
+      : fields_(fields),
+        compressor_(compression == VtpCompression::lz4 ? "vtkLZ4DataCompressor"
+                                                       : "vtkZLibDataCompressor") {
     const Connectivity& connectivity = fields.frames->connectivity();
-    set_polygons(*data_, connectivity);
-    for (const Field& field : fields.fields) add_field(*data_, field, connectivity);
+    const vtkNew<vtkPolyData> data;
+    set_polygons(*data, connectivity);
+    for (const Field& field : fields.fields) add_field(*data, field, connectivity);
+    const char* scalars = active_scalars(*data);
+    before_ = "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"" +
+              std::string(is_little_endian() ? "LittleEndian" : "BigEndian") +
+              "\" header_type=\"UInt32\" compressor=\"" + compressor_ +
+              "\">\n<PolyData>\n<Piece NumberOfPoints=\"" + std::to_string(connectivity.vertices) +
+              "\" NumberOfPolys=\"" + std::to_string(connectivity.polygons.size()) +
+              "\">\n<PointData" + (scalars ? " Scalars=\"" + escaped_for_xml(scalars) + '"' : "") +
+              ">\n" + elements_of(*data->GetPointData());
+    between_ = "</PointData>\n<CellData>\n" + elements_of(*data->GetCellData()) +
+               "</CellData>\n<Points>\n";
+    vtkDataArray* corners = data->GetPolys()->GetConnectivityArray();
+    corners->SetName("connectivity");
+    // Files give the ends of faces only.
+    vtkNew<vtkTypeInt32Array> ends;
+    ends->SetName("offsets");
+    for (int polygon = 0; polygon < connectivity.polygons.size(); ++polygon) {
+      ends->InsertNextValue(connectivity.polygons.offsets[static_cast<std::size_t>(polygon) + 1]);
+    }
+    after_ = "</Points>\n<Polys>\n" + data_array_element(*corners, compressor_) +
+             data_array_element(*ends, compressor_) +
+             "</Polys>\n</Piece>\n</PolyData>\n</VTKFile>\n";
   }
 
-  vtkPolyData& at(int frame) {
+  /// Safe to call from several threads.
+  std::string at(int frame) const {
     const Frames pose = fields_.frames->read(frame, 1);
     const PositionsView positions(pose.data(), fields_.frames->vertices(), 3);
-    set_positions(*data_, positions, Precision::single_precision);
-    if (fields_.displacement) add_displacement(*data_, positions - fields_.frames->rest());
-    return *data_;
+    const vtkNew<vtkPolyData> data;
+    set_positions(*data, positions, Precision::single_precision);
+    if (fields_.displacement) add_displacement(*data, positions - fields_.frames->rest());
+    return before_ + elements_of(*data->GetPointData()) + between_ +
+           data_array_element(*data->GetPoints()->GetData(), compressor_) + after_;
   }
 
  private:
-  const FieldSequence& fields_;
-  vtkNew<vtkPolyData> data_;
-};
+  static bool is_little_endian() { return std::endian::native == std::endian::little; }
 
-/// Text of a .vtp file. VTK does not write it to disk, because on a full disk VTK frees memory that
-/// it does not own.
-std::string vtp_text(vtkPolyData& data, VtpCompression compression) {
-  const vtkNew<vtkXMLPolyDataWriter> writer;
-  writer->SetInputData(&data);
-  // VTK up to 9.3 cannot read appended data with libexpat 2.6 or later, or with Debian 12's
-  // libexpat and its fixes.
-  writer->SetDataModeToBinary();
-  writer->SetByteOrderToLittleEndian();
-  if (compression == VtpCompression::lz4) {
-    writer->SetCompressorTypeToLZ4();
-  } else {
-    writer->SetCompressorTypeToZLib();
+  static const char* active_scalars(vtkPolyData& data) {
+    vtkDataArray* scalars = data.GetPointData()->GetScalars();
+    return scalars ? scalars->GetName() : nullptr;
   }
-  writer->WriteToOutputStringOn();
-  if (!writer->Write()) throw std::runtime_error("VTK cannot write this mesh");
-  return writer->GetOutputString();
-}
 
-/// Meshes for several threads. VTK's arrays cache values computed for a file, so each thread needs
-/// its own mesh.
-class FrameDataPool {
- public:
-  FrameDataPool(const FieldSequence& fields, VtpCompression compression)
-      : fields_(fields), compression_(compression) {}
-
-  std::unique_ptr<FrameData> take() {
-    {
-      const std::lock_guard lock(mutex_);
-      if (!free_.empty()) {
-        std::unique_ptr<FrameData> data = std::move(free_.back());
-        free_.pop_back();
-        return data;
-      }
+  std::string elements_of(vtkFieldData& arrays) const {
+    std::string text;
+    for (int i = 0; i < arrays.GetNumberOfArrays(); ++i) {
+      text += data_array_element(*arrays.GetArray(i), compressor_);
     }
-    auto data = std::make_unique<FrameData>(fields_);
-    // The cached values affect the next file. Every mesh therefore writes frame 0 first, so that
-    // files do not depend on the thread that writes them.
-    vtp_text(data->at(0), compression_);
-    return data;
+    return text;
   }
 
-  void give_back(std::unique_ptr<FrameData> data) {
-    const std::lock_guard lock(mutex_);
-    free_.push_back(std::move(data));
-  }
-
- private:
   const FieldSequence& fields_;
-  VtpCompression compression_;
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<FrameData>> free_;
+  std::string compressor_;
+  std::string before_, between_, after_;  ///< around the fields that change, and the points
 };
 
 std::string decimal(double value) {
@@ -194,7 +190,7 @@ std::filesystem::path write_one(const FieldSequence& fields, const std::filesyst
                                 const VtpOptions& options, const Context& context) {
   PendingOutputs outputs(options.overwrite, options.inputs, options.together);
   write_bytes(outputs.add(target, PendingOutput::Kind::file),
-              vtp_text(FrameData(fields).at(0), options.compression));
+              VtpTexts(fields, options.compression).at(0));
   context.report(1);
   outputs.commit();
   return target;
@@ -226,20 +222,12 @@ std::vector<std::filesystem::path> write_all(const FieldSequence& fields,
   std::vector<std::filesystem::path> written = {target, series};
   for (const FrameEntry& entry : entries) written.push_back(beside / entry.file);
   written.push_back(frames / kFolderManifest);
-  const auto write = [&](FrameData& data, int f) {
+  const VtpTexts texts(fields, options.compression);
+  const auto write = [&](int f) {
     const std::filesystem::path frame = entries[static_cast<std::size_t>(f)].file;
-    write_bytes(folder / frame.filename(), vtp_text(data.at(f), options.compression));
+    write_bytes(folder / frame.filename(), texts.at(f));
   };
-  FrameDataPool pool(fields, options.compression);
-  auto first = std::make_unique<FrameData>(fields);
-  write(*first, 0);
-  pool.give_back(std::move(first));
-  const auto write_further = [&](int f) {
-    std::unique_ptr<FrameData> data = pool.take();
-    write(*data, f + 1);
-    pool.give_back(std::move(data));
-  };
-  parallel_for(fields.frames->frames() - 1, write_further, context);
+  parallel_for(fields.frames->frames(), write, context);
   context.report(1);
   outputs.commit();
   return written;

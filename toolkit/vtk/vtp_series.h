@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "toolkit/io/sequence_format.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/fields.h"
@@ -58,17 +59,14 @@ std::vector<std::filesystem::path> write_vtp_series(const FieldSequence& fields,
                                                     const Context& context = {});
 
 struct VtpReadOptions {
-  /// Returns the frames to read (0-based), given their number; all frames if empty.
-  std::function<std::vector<int>(int count)> selected = {};
+  /// Its `frames` selects frames; its `fps` is for series without times.
+  SequenceSource source = {};
   /// If false, reads no fields, and opens no further files to compare them.
   bool fields = true;
-
-  static constexpr Option kFields{"fields", &VtpReadOptions::fields};
-  static constexpr auto declared() { return std::tuple(kFields); }
 };
 
-/// Opens a series as write_vtp_series() or ParaView writes it: NAME.pvd, NAME.vtp.series, or one
-/// NAME.vtp.
+/// Opens a series as write_vtp_series() or ParaView writes it: NAME.pvd, NAME.vtp.series, a folder
+/// or pattern of numbered files, or one file. Files are .vtp, .vtu or legacy .vtk.
 ///
 /// Keeps the fields that are equal in all chosen frames, and reads each frame once to compare them.
 /// Notes name the dropped fields, but may omit fields that are missing from the first frame. If
@@ -84,7 +82,7 @@ FieldSequence open_vtp_series(const std::filesystem::path& path, const VtpReadOp
 FieldSequence read_vtp_series(const std::filesystem::path& path, const VtpReadOptions& = {},
                               const Context& context = {});
 
-/// Files that open_vtp_series() reads for a path: the path itself and the frames that it lists.
+/// Files that open_vtp_series() reads for a path: the list or the file, and all frames.
 std::vector<std::filesystem::path> vtp_series_files(const std::filesystem::path& path);
 
 /// Field on the vertices of a .vtp file (N x c). Throws IoError if the file or field is missing.

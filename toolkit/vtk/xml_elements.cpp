@@ -13,6 +13,12 @@ namespace {
 
 constexpr std::size_t kDeepestXml = 32;
 
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && ends_word(text.front())) text.remove_prefix(1);
+  while (!text.empty() && ends_word(text.back())) text.remove_suffix(1);
+  return text;
+}
+
 class XmlWalk {
  public:
   XmlWalk(const std::string& path, std::string_view text)
@@ -29,7 +35,7 @@ class XmlWalk {
       }
     }
     if (found_.empty()) fail("expected XML");
-    if (!open_.empty()) fail("is truncated: <" + open_.back() + "> is not closed");
+    if (!open_.empty()) fail("is truncated: <" + around().name + "> is not closed");
     return std::move(found_);
   }
 
@@ -39,8 +45,15 @@ class XmlWalk {
     throw IoError(path_, "line " + std::to_string(line) + ": " + problem);
   }
 
+  /// Innermost element that is not closed yet. \pre there is one
+  XmlElement& around() { return found_[open_.back()]; }
+
+  /// Moves to the next tag, and gives the text before it to the element around it.
   bool next_tag() {
+    const std::size_t first = at_;
     at_ = std::min(text_.find('<', at_), text_.size());
+    const std::string_view text = trimmed(text_.substr(first, at_ - first));
+    if (!text.empty() && !open_.empty()) around().text = text;
     return at_ < text_.size();
   }
 
@@ -76,7 +89,7 @@ class XmlWalk {
     at_ += 2;
     const std::string name = word();
     skip_spaces();
-    if (here() != '>' || open_.empty() || open_.back() != name)
+    if (here() != '>' || open_.empty() || around().name != name)
       fail("</" + name + "> closes nothing");
     ++at_;
     open_.pop_back();
@@ -85,14 +98,14 @@ class XmlWalk {
   /// Reads a start tag and returns its name.
   std::string open() {
     ++at_;
-    XmlElement element{word(), {}, open_.empty() ? "" : open_.back(), 0};
+    XmlElement element{word(), {}, open_.empty() ? "" : around().name};
     if (open_.empty() && !found_.empty()) fail("expected one element around all others");
     for (skip_spaces(); here() != '>' && here() != '/'; skip_spaces()) add_attribute(element);
     const bool is_empty = here() == '/';
     if (is_empty) ++at_;
     if (here() != '>') fail("expected '>'");
     element.end_of_tag = ++at_ + skipped_;
-    if (!is_empty) open_.push_back(element.name);
+    if (!is_empty) open_.push_back(found_.size());
     if (open_.size() > kDeepestXml) {
       fail("more than " + std::to_string(kDeepestXml) + " elements inside each other");
     }
@@ -122,8 +135,7 @@ class XmlWalk {
         {{"amp", '&'}, {"lt", '<'}, {"gt", '>'}, {"quot", '"'}, {"apos", '\''}, {"#39", '\''}}};
     std::string text;
     for (std::size_t i = 0; i < value.size(); ++i) {
-      // VTK ends a tag at the first '>'.
-      if (value[i] == '<' || value[i] == '>') fail("expected no '<' or '>' in a value");
+      if (value[i] == '<') fail("expected no '<' in a value");
       if (value[i] != '&') {
         text += value[i];
         continue;
@@ -144,7 +156,7 @@ class XmlWalk {
   std::string_view text_;
   std::size_t skipped_;
   std::size_t at_ = 0;
-  std::vector<std::string> open_;
+  std::vector<std::size_t> open_;  ///< indices of the elements that are not closed yet
   std::vector<XmlElement> found_;
 };
 
