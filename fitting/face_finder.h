@@ -68,6 +68,10 @@ class FaceFinder {
 /// Returns false if mimetra was built without dlib.
 bool faces_can_be_found();
 
+/// Throws IoError that begins with `name` and names the missing packages, if mimetra was built
+/// without dlib.
+void require_dlib(const std::string& name);
+
 /// Faces of one frame.
 struct FacesInImage {
   std::string image;  ///< name of the image

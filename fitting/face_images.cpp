@@ -17,7 +17,6 @@
 
 #include "fitting/face_finder.h"
 #include "fitting/followed_face.h"
-#include "fitting/image_codec.h"
 #include "fitting/landmark_formats.h"
 #include "fitting/landmark_mapping.h"
 #include "toolkit/mesh/context.h"

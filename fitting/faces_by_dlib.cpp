@@ -6,13 +6,11 @@
 #include <vector>
 
 #include <dlib/array2d.h>
-#include <dlib/image_loader/jpeg_loader.h>
-#include <dlib/image_loader/png_loader.h>
 #include <dlib/image_processing/frontal_face_detector.h>
 #include <dlib/image_processing/shape_predictor.h>
+#include <dlib/image_transforms.h>
 
 #include "fitting/face_finder.h"
-#include "fitting/image_codec.h"
 #include "fitting/image_files.h"
 #include "toolkit/correspondence/landmark_finder.h"
 #include "toolkit/mesh/errors.h"
@@ -53,20 +51,7 @@ static const void* image_data(const Image& image) {
 
 namespace {
 
-using Pixels = dlib::array2d<dlib::rgb_pixel>;
-
 constexpr unsigned long kModelLandmarks = kFaceLandmarks;
-
-Image image_of(const Pixels& pixels) {
-  Image image(static_cast<int>(pixels.nc()), static_cast<int>(pixels.nr()));
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      const dlib::rgb_pixel& pixel = pixels[y][x];
-      image.at(x, y) = {pixel.red, pixel.green, pixel.blue};
-    }
-  }
-  return image;
-}
 
 /// Validates a stored shape predictor, which dlib would trust. References of trees and anchors must
 /// be valid, and counts must not exceed the bytes of the file.
@@ -195,232 +180,51 @@ Detector of_one_level(const Detector& detector) {
   return {scanner, detector.get_overlap_tester(), weights};
 }
 
-/// Columns or rows from `first` to before `last`.
-struct PixelRange {
-  int first = 0;
-  int last = 0;
-
-  int size() const { return last - first; }
-};
-
-struct PixelArea {
-  PixelRange columns;
-  PixelRange rows;
-};
-
-/// Part of a pyramid level.
-struct PyramidPart {
-  PixelArea area;
-  Image pixels;
-};
-
-bool is_empty(const PixelArea& area) {
-  return area.columns.size() <= 0 || area.rows.size() <= 0;
-}
-
-PixelRange joined(const PixelRange& a, const PixelRange& b) {
-  return {std::min(a.first, b.first), std::max(a.last, b.last)};
-}
-
-/// Step between neighbouring pixels of a level, in pixels of the level before it.
-double step_between(const PixelRange& before, const PixelRange& after) {
-  return (before.last - 1) / static_cast<double>(std::max(after.last - 1, 1));
-}
-
-/// A pixel, its successor, and the weight of the successor.
-struct Between {
-  int first;
-  int second;
-  float share;
-};
-
-std::vector<Between> places(const PixelRange& before, const PixelRange& after,
-                            const PixelRange& wanted) {
-  const double step = step_between(before, after);
-  std::vector<Between> found;
-  for (int i = wanted.first; i < wanted.last; ++i) {
-    const double place = i * step;
-    const int first = std::min(static_cast<int>(place), before.last - 1);
-    found.push_back(
-        {first, std::min(first + 1, before.last - 1), static_cast<float>(place - first)});
+/// Searches for faces near the size and place of the last one: in three levels of the pyramid of a
+/// part around it. Windows lie where a search of the whole image has them, to a pixel of the level.
+Detections found_near(const Image& image, const Face& last, Detector& one_level) {
+  using Pyramid = dlib::pyramid_down<6>;
+  constexpr double kStep = 6.0 / 5;    // from one level to the level before
+  constexpr double kWindow = 72;       // pixels of a face in its level
+  constexpr double kCell = 8;          // pixels between windows
+  constexpr double kEdge = 3 * kCell;  // cells at an edge lack gradients from beyond it
+  const auto middle =
+      static_cast<int>(std::max(std::lround(std::log(last.width / kWindow) / std::log(kStep)), 0L));
+  // Half of the face, the same distance again for its motion, and the edge.
+  const double half = last.width + kEdge * std::pow(kStep, middle + 1);
+  const double cell = kCell * std::pow(kStep, middle);
+  const auto begin = [half, cell](double center, int size) {
+    const double first_cell = std::floor(std::clamp(center - half, 0.0, size - 1.0) / cell);
+    return static_cast<int>(std::lround(first_cell * cell));
+  };
+  const int left = begin(last.left + last.width / 2, image.width);
+  const int top = begin(last.top + last.height / 2, image.height);
+  const int side = static_cast<int>(2 * half + cell) + 1;
+  dlib::array2d<dlib::rgb_pixel> pixels, smaller;
+  dlib::assign_image(pixels, cropped(image, left, top, side, side));
+  Detections found;
+  for (int level = 0; level <= middle + 1 && pixels.size() > 0; ++level) {
+    if (level >= middle - 1) {
+      const auto to_cell = [&](int place) {
+        const double in_level = place * std::pow(kStep, -level);
+        return std::max(std::lround(std::ceil((in_level - 1) / kCell) * kCell - in_level), 0L);
+      };
+      const long x = to_cell(left), y = to_cell(top);
+      const dlib::rectangle all(x, y, pixels.nc() - 1, pixels.nr() - 1);
+      Detections of_level;
+      if (!all.is_empty()) one_level(dlib::sub_image(pixels, all), of_level);
+      for (dlib::rect_detection& face : of_level) {
+        const dlib::rectangle placed = dlib::translate_rect(face.rect, x, y);
+        face.rect = dlib::translate_rect(Pyramid().rect_up(placed, static_cast<unsigned>(level)),
+                                         left, top);
+        found.push_back(face);
+      }
+    }
+    Pyramid()(pixels, smaller);
+    pixels.swap(smaller);
   }
   return found;
 }
-
-PixelRange source_of(const PixelRange& before, const PixelRange& after, const PixelRange& wanted) {
-  const double step = step_between(before, after);
-  return {std::min(static_cast<int>(wanted.first * step), before.last - 1),
-          std::min(static_cast<int>((wanted.last - 1) * step) + 2, before.last)};
-}
-
-PyramidPart part_of(const PyramidPart& all, const PixelArea& area) {
-  if (is_empty(area)) return {area, {}};
-  return {area,
-          cropped(all.pixels, area.columns.first - all.area.columns.first,
-                  area.rows.first - all.area.rows.first, area.columns.size(), area.rows.size())};
-}
-
-/// Smallest area that contains both. Empty areas are ignored.
-PixelArea joined(const PixelArea& a, const PixelArea& b) {
-  if (is_empty(a)) return b;
-  if (is_empty(b)) return a;
-  return {joined(a.columns, b.columns), joined(a.rows, b.rows)};
-}
-
-/// Image pyramid that computes only parts of its levels, with the same pixels as the whole. Each
-/// level has five sixths of the columns and rows of the level before it and interpolates between
-/// its pixels. The corner pixels coincide.
-class DetectorPyramid {
- public:
-  /// Makes levels down to `least` columns and rows. Level 0 is the image, which must outlive this.
-  DetectorPyramid(const Image& image, int least) : image_(image) {
-    int width = image.width, height = image.height;
-    do {
-      whole_.push_back({{0, width}, {0, height}});
-      width = 5 * width / 6;
-      height = 5 * height / 6;
-    } while (width >= least && height >= least);
-  }
-
-  int levels() const { return static_cast<int>(whole_.size()); }
-  /// Area of a whole level.
-  const PixelArea& whole(int level) const { return whole_.at(static_cast<std::size_t>(level)); }
-
-  /// Computes the pixels of the areas `wanted`, one for each of the first levels. Empty areas are
-  /// allowed. \pre areas are inside their levels
-  std::vector<PyramidPart> parts(const std::vector<PixelArea>& wanted) const {
-    std::vector<PyramidPart> parts;
-    parts.reserve(wanted.size());
-    for (const PixelArea& area : wanted) parts.push_back({area, {}});
-    // The source of each area must be computed in the level before it.
-    for (int level = static_cast<int>(parts.size()) - 1; level > 0; --level) {
-      const PixelArea& area = parts[static_cast<std::size_t>(level)].area;
-      if (is_empty(area)) continue;
-      PixelArea& before = parts[static_cast<std::size_t>(level) - 1].area;
-      before = joined(before, source_of(level, area));
-    }
-    for (int level = 0; level < static_cast<int>(parts.size()); ++level) {
-      auto& [area, pixels] = parts[static_cast<std::size_t>(level)];
-      if (is_empty(area)) continue;
-      if (level > 0) {
-        pixels = interpolated(parts[static_cast<std::size_t>(level) - 1], level, area);
-        continue;
-      }
-      pixels = cropped(image_, area.columns.first, area.rows.first, area.columns.size(),
-                       area.rows.size());
-    }
-    for (std::size_t level = 0; level < parts.size(); ++level) {
-      parts[level] = part_of(parts[level], wanted[level]);
-    }
-    return parts;
-  }
-
- private:
-  /// Pixels of the level before that an area is interpolated from.
-  PixelArea source_of(int level, const PixelArea& area) const {
-    const PixelArea &before = whole(level - 1), &after = whole(level);
-    return {mimetra::source_of(before.columns, after.columns, area.columns),
-            mimetra::source_of(before.rows, after.rows, area.rows)};
-  }
-
-  Image interpolated(const PyramidPart& before, int level, const PixelArea& area) const {
-    const auto columns = places(whole(level - 1).columns, whole(level).columns, area.columns);
-    const auto rows = places(whole(level - 1).rows, whole(level).rows, area.rows);
-    Image image(area.columns.size(), area.rows.size());
-    const int left = before.area.columns.first, top = before.area.rows.first;
-    for (int y = 0; y < image.height; ++y) {
-      const Between& row = rows[static_cast<std::size_t>(y)];
-      const Color* upper = &before.pixels.at(0, row.first - top);
-      const Color* lower = &before.pixels.at(0, row.second - top);
-      for (int x = 0; x < image.width; ++x) {
-        const Between& column = columns[static_cast<std::size_t>(x)];
-        const float lower_left = row.share * (1 - column.share);
-        const float lower_right = row.share * column.share;
-        const float upper_left = (1 - row.share) * (1 - column.share);
-        const float upper_right = (1 - row.share) * column.share;
-        const auto mixed = [&](std::uint8_t Color::*channel) {
-          // Truncates as dlib does instead of rounding.
-          return static_cast<std::uint8_t>(
-              upper_left * float(upper[column.first - left].*channel) +
-              upper_right * float(upper[column.second - left].*channel) +
-              lower_left * float(lower[column.first - left].*channel) +
-              lower_right * float(lower[column.second - left].*channel));
-        };
-        image.at(x, y) = {mixed(&Color::red), mixed(&Color::green), mixed(&Color::blue)};
-      }
-    }
-    return image;
-  }
-
-  const Image& image_;
-  std::vector<PixelArea> whole_;
-};
-
-/// Searches for faces near the size and place of the last one: in three levels of the pyramid, each
-/// in a part around the face. Its windows are on the grid of the whole level and give the same
-/// detections.
-class NearSearch {
- public:
-  NearSearch(const Image& image, const Detector& one_level)
-      : pyramid_(image, kLeastLevel), detector_(one_level) {}
-
-  Detections around(const Face& last) {
-    const double level = std::log(last.width / kWindow) / std::log(kStep);
-    const int middle = std::clamp(static_cast<int>(std::lround(level)), 0, pyramid_.levels() - 1);
-    const int first = std::max(middle - 1, 0), end = std::min(middle + 2, pyramid_.levels());
-    std::vector<PixelArea> wanted(static_cast<std::size_t>(end));
-    for (int l = first; l < end; ++l) wanted[static_cast<std::size_t>(l)] = area_of(last, l);
-    const std::vector<PyramidPart> parts = pyramid_.parts(wanted);
-    Detections found;
-    for (int l = first; l < end; ++l) add(parts[static_cast<std::size_t>(l)], l, found);
-    return found;
-  }
-
- private:
-  static constexpr double kStep = 6.0 / 5;  ///< from one level to the level before
-  static constexpr int kWindow = 72;        ///< pixels of a face in its level
-  static constexpr int kLeastLevel = 64;    ///< the detector makes no smaller levels
-  static constexpr int kCell = 8;           ///< pixels between windows
-  /// Cells at the edge of a part lack gradients from beyond it. Their windows are dropped.
-  static constexpr int kEdge = 2 * kCell;
-
-  /// Half of the face, the same distance again for its motion, and the edge.
-  PixelArea area_of(const Face& last, int level) const {
-    const double scale = std::pow(kStep, -level);
-    const double half = scale * last.width + kEdge;
-    const PixelArea& whole = pyramid_.whole(level);
-    const auto range = [&](double middle, const PixelRange& all) -> PixelRange {
-      const auto cell = [&](double at) {
-        return kCell * static_cast<int>(std::clamp(at, 0.0, double(all.last)) / kCell);
-      };
-      return {std::min(cell(middle - half), all.last - 1),
-              std::min(cell(middle + half) + kCell, all.last)};
-    };
-    return {range(scale * (last.left + last.width / 2), whole.columns),
-            range(scale * (last.top + last.height / 2), whole.rows)};
-  }
-
-  void add(const PyramidPart& part, int level, Detections& found) {
-    const auto& [area, pixels] = part;
-    const PixelArea& whole = pyramid_.whole(level);
-    const auto edge = [](bool is_own) { return is_own ? 2L * kWindow : -long{kEdge}; };
-    const dlib::rectangle counted(-edge(area.columns.first == 0), -edge(area.rows.first == 0),
-                                  pixels.width - 1 + edge(area.columns.last == whole.columns.last),
-                                  pixels.height - 1 + edge(area.rows.last == whole.rows.last));
-    Detections of_part;
-    detector_(pixels, of_part);
-    for (dlib::rect_detection& face : of_part) {
-      if (!counted.contains(face.rect)) continue;
-      const dlib::rectangle placed =
-          dlib::translate_rect(face.rect, area.columns.first, area.rows.first);
-      face.rect = dlib::pyramid_down<6>().rect_up(placed, static_cast<unsigned>(level));
-      found.push_back(face);
-    }
-  }
-
-  DetectorPyramid pyramid_;
-  Detector detector_;  ///< the detector stores features of the image
-};
 
 /// Keeps the best of overlapping detections, best first.
 Detections best_of(Detections found, const dlib::test_box_overlap& overlap) {
@@ -466,10 +270,10 @@ std::vector<Face> FaceFinder::faces(const Image& image) const {
 }
 
 std::vector<Face> FaceFinder::faces_near(const Image& image, const std::vector<Face>& last) const {
-  NearSearch search(image, state_->one_level);
+  Detector one_level = state_->one_level;  // the detector stores features of the image
   Detections found;
   for (const Face& face : last) {
-    const Detections near = search.around(face);
+    const Detections near = found_near(image, face, one_level);
     found.insert(found.end(), near.begin(), near.end());
   }
   return state_->faces(image, best_of(found, state_->detector.get_overlap_tester()));
@@ -480,20 +284,5 @@ bool faces_can_be_found() {
 }
 
 void require_dlib(const std::string&) {}
-
-Image decoded_image(const std::string& name, const std::string& bytes, const ImageHeader& header) {
-  const auto* begin = reinterpret_cast<const unsigned char*>(bytes.data());
-  Pixels pixels;
-  try {
-    if (header.is_png) {
-      dlib::png_loader(begin, bytes.size()).get_image(pixels);
-    } else {
-      dlib::jpeg_loader(begin, bytes.size()).get_image(pixels);
-    }
-  } catch (const dlib::error& error) {
-    throw IoError(name, std::string("the image is damaged: ") + error.what());
-  }
-  return image_of(pixels);
-}
 
 }  // namespace mimetra

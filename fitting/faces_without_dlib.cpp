@@ -1,5 +1,4 @@
 #include "fitting/face_finder.h"
-#include "fitting/image_codec.h"
 #include "toolkit/mesh/errors.h"
 
 /// Errors of a build without dlib when images are used.
@@ -35,10 +34,6 @@ bool faces_can_be_found() {
 }
 
 void require_dlib(const std::string& name) {
-  throw IoError(name, kMissing);
-}
-
-Image decoded_image(const std::string& name, const std::string&, const ImageHeader&) {
   throw IoError(name, kMissing);
 }
 

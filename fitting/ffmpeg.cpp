@@ -9,8 +9,9 @@
 
 #include <dlfcn.h>
 
-#include "fitting/image_codec.h"
+#include "fitting/orientation.h"
 #include "fitting/video_codec.h"
+#include "toolkit/io/image_decoder.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 

@@ -5,8 +5,9 @@
 #include <functional>
 #include <stdexcept>
 
-#include "fitting/image_codec.h"
+#include "fitting/orientation.h"
 #include "toolkit/io/frame_files.h"
+#include "toolkit/io/image_decoder.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
@@ -20,6 +21,25 @@ constexpr Color kWhite = {255, 255, 255};
 void check_pixels(const Image& image) {
   if (image.pixels.empty()) throw std::invalid_argument("the image has no pixels");
 }
+
+/// Colours of a decoded picture. Opacity is dropped.
+struct ColorImage : PixelSink {
+  void begin(const PictureSize& size) override {
+    image = Image(static_cast<int>(size.width), static_cast<int>(size.height));
+  }
+  void take(std::uint64_t row, std::uint64_t column, std::uint64_t step,
+            std::span<const std::uint16_t> rgba) override {
+    const auto in_8_bits = [](std::uint16_t value) {
+      return static_cast<std::uint8_t>((value + 128U) / 257U);
+    };
+    for (; !rgba.empty(); rgba = rgba.subspan(4), column += step) {
+      image.at(static_cast<int>(column), static_cast<int>(row)) = {
+          in_8_bits(rgba[0]), in_8_bits(rgba[1]), in_8_bits(rgba[2])};
+    }
+  }
+
+  Image image;
+};
 
 /// Source pixels from `first` to before `last` that a target pixel covers; at least one.
 struct Span {
@@ -85,14 +105,14 @@ std::vector<std::filesystem::path> image_files(const std::string& text) {
 
 Image read_image(const std::filesystem::path& path) {
   const std::string bytes = read_file(path);
-  const ImageHeader header = checked_image_header(path.string(), bytes);
-  return oriented(decoded_image(path.string(), bytes, header), header.orientation);
+  ColorImage pixels;
+  decode_picture(path.string(), bytes, pixels);
+  return oriented(std::move(pixels.image), orientation_of_exif(exif_orientation(bytes)));
 }
 
 void ImageFiles::check() const {
   for (const std::filesystem::path& path : files_) {
-    require_dlib(path.string());
-    checked_image_header(path.string(), read_file(path));
+    picture_size(path.string(), read_file(path));
   }
 }
 

@@ -240,8 +240,8 @@ TEST_F(BrightnessTest, IsRefusedForSizesThatCannotBe) {
   };
   resize(std::string("\0\x01\0\0\0\x01\0\0", 8));
   EXPECT_THAT([&] { read(png); }, ThrowsMessage<IoError>(HasSubstr("65536 x 65536 pixels")));
-  resize(std::string("\0\0\x20\0\0\0\x20\1", 8));
-  EXPECT_THAT([&] { read(png); }, ThrowsMessage<IoError>(HasSubstr("8192 x 8193 pixels")));
+  resize(std::string("\0\0\x40\0\0\0\x40\1", 8));
+  EXPECT_THAT([&] { read(png); }, ThrowsMessage<IoError>(HasSubstr("16384 x 16385 pixels")));
   // 4096 x 4096 could be, but not of so few bytes.
   resize(std::string("\0\0\x10\0\0\0\x10\0", 8));
   EXPECT_THAT([&] { read(png); }, ThrowsMessage<IoError>(HasSubstr("truncated")));

@@ -1,13 +1,15 @@
 #include "toolkit/io/painting_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <optional>
-#include <string_view>
+#include <span>
+#include <utility>
 
 #include "toolkit/io/csv.h"
-#include "toolkit/io/pixels.h"
+#include "toolkit/io/image_decoder.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
@@ -19,14 +21,53 @@ namespace {
 
 const std::vector<std::string> kPictures = {".png", ".jpg", ".jpeg"};
 
-constexpr std::string_view kPngStart = "\x89PNG\r\n\x1a\n";
-constexpr std::string_view kJpegStart = "\xff\xd8";
-
-Pixels pixels_of(const std::string& path, const std::string& bytes) {
-  if (bytes.starts_with(kPngStart)) return pixels_of_png(path, bytes);
-  if (bytes.starts_with(kJpegStart)) return pixels_of_jpeg(path, bytes);
-  throw IoError(path, "is no image that can be read; expected PNG or JPEG");
+/// Luma with the weights of Rec. 601 in thousandths. Grey values stay exact.
+std::uint16_t luma_of(const std::uint16_t* rgb) {
+  return static_cast<std::uint16_t>((299U * rgb[0] + 587U * rgb[1] + 114U * rgb[2] + 500U) / 1000U);
 }
+
+/// Brightness and opacity of pixels. Colours are not kept, since large textures would need a
+/// gigabyte.
+struct Pixels : PixelSink {
+  /// height x width, from the top left.
+  using Plane = Eigen::Matrix<std::uint16_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  void begin(const PictureSize& size) override {
+    const auto height = static_cast<Eigen::Index>(size.height);
+    const auto width = static_cast<Eigen::Index>(size.width);
+    luma.resize(height, width);
+    if (size.has_opacity) opacity.resize(height, width);
+  }
+
+  void take(std::uint64_t row, std::uint64_t column, std::uint64_t step,
+            std::span<const std::uint16_t> rgba) override {
+    // Channels of a grey image differ by at most this much after compression.
+    constexpr int kColored = 65535 / 16;
+    const auto y = static_cast<Eigen::Index>(row);
+    for (; !rgba.empty(); rgba = rgba.subspan(4), column += step) {
+      const std::uint16_t* pixel = rgba.data();
+      const auto x = static_cast<Eigen::Index>(column);
+      luma(y, x) = luma_of(pixel);
+      if (opacity.size() > 0) opacity(y, x) = pixel[3];
+      if (!has_first_) std::copy_n(pixel, 4, first_.begin());
+      has_first_ = true;
+      colors_differ = colors_differ || !std::equal(pixel, pixel + 3, first_.begin());
+      opacities_differ = opacities_differ || pixel[3] != first_[3];
+      const auto [least, most] = std::minmax({pixel[0], pixel[1], pixel[2]});
+      is_colored = is_colored || most - least > kColored;
+    }
+  }
+
+  Plane luma;
+  Plane opacity;  ///< empty if the file has none
+  bool colors_differ = false;
+  bool opacities_differ = false;
+  bool is_colored = false;  ///< some pixels are not grey
+
+ private:
+  std::array<std::uint16_t, 4> first_ = {};
+  bool has_first_ = false;
+};
 
 /// Value over a black background; exact for opaque pixels.
 std::uint16_t over_black(std::uint32_t value, std::uint32_t opacity) {
@@ -77,21 +118,22 @@ double Brightness::at(double u, double v) const {
 
 Brightness read_brightness(const std::filesystem::path& path) {
   const std::string name = path.string();
-  Pixels pixels = pixels_of(name, read_file(path));
-  const bool by_opacity = pixels.opacities_differ() && !pixels.colors_differ();
-  Brightness brightness{by_opacity ? pixels.take_opacity() : pixels.take_luma()};
+  Pixels pixels;
+  decode_picture(name, read_file(path), pixels);
+  const bool by_opacity = pixels.opacities_differ && !pixels.colors_differ;
+  Brightness brightness{std::move(by_opacity ? pixels.opacity : pixels.luma)};
   if (by_opacity) {
     brightness.notes.push_back(name + ": all of it has one colour; its opacity is taken");
     return brightness;
   }
-  if (pixels.is_colored()) {
+  if (pixels.is_colored) {
     brightness.notes.push_back(name + ": is coloured; how bright its colours are is taken");
   }
-  if (pixels.opacity().size() == 0) return brightness;
+  if (pixels.opacity.size() == 0) return brightness;
   for (Eigen::Index i = 0; i < brightness.pixels.size(); ++i) {
-    brightness.pixels(i) = over_black(brightness.pixels(i), pixels.opacity()(i));
+    brightness.pixels(i) = over_black(brightness.pixels(i), pixels.opacity(i));
   }
-  if (pixels.opacities_differ()) {
+  if (pixels.opacities_differ) {
     brightness.notes.push_back(name +
                                ": is transparent in places, which count as if they lay on black");
   }

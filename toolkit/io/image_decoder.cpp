@@ -1,10 +1,12 @@
-#include "toolkit/io/pixels.h"
+#include "toolkit/io/image_decoder.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
+#include <new>
 #include <vector>
 
 #include <jpeglib.h>
@@ -14,51 +16,28 @@
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {
-
 namespace {
 
-/// Luma with the weights of Rec. 601 in thousandths. Grey values stay exact.
-std::uint16_t luma_of(const std::uint16_t* rgb) {
-  return static_cast<std::uint16_t>((299U * rgb[0] + 587U * rgb[1] + 114U * rgb[2] + 500U) / 1000U);
-}
-
-/// Channels of a grey image differ by at most this much after compression.
-constexpr int kColored = 65535 / 16;
+constexpr std::string_view kPngStart = "\x89PNG\r\n\x1a\n";
+constexpr std::string_view kJpegStart = "\xff\xd8";
 
 [[noreturn]] void fail_truncated(const std::string& path, std::uint64_t bytes) {
   throw IoError(path, "the image is truncated after " + std::to_string(bytes) +
                           " bytes; copy or export it again");
 }
 
-/// Throws IoError if there are more than kMostPixels. Also throws it, as for a truncated file, if
-/// there are more than `most_per_byte` pixels for each of the file's `bytes`.
-void check_pixel_count(const std::string& path, std::uint64_t width, std::uint64_t height,
-                       std::uint64_t bytes, std::uint64_t most_per_byte) {
-  if (width * height > kMostPixels) {
-    throw IoError(path, "says it has " + std::to_string(width) + " x " + std::to_string(height) +
-                            " pixels, and " + std::to_string(kMostPixels) +
-                            " can be read; make it smaller, or is it damaged?");
+/// Throws IoError if there are no pixels or more than kMostPixels. Also throws it, as for a
+/// truncated file, if there are more than `most_per_byte` pixels for each of the file's `bytes`.
+void check_pixel_count(const std::string& path, const PictureSize& size, std::uint64_t bytes,
+                       std::uint64_t most_per_byte) {
+  const std::uint64_t pixels = size.width * size.height;
+  if (pixels == 0 || pixels > kMostPixels) {
+    throw IoError(path, "says it has " + std::to_string(size.width) + " x " +
+                            std::to_string(size.height) + " pixels, expected 1 to " +
+                            std::to_string(kMostPixels) + " in all");
   }
-  if (width * height / most_per_byte > bytes) fail_truncated(path, bytes);
+  if (pixels / most_per_byte > bytes) fail_truncated(path, bytes);
 }
-
-}  // namespace
-
-Pixels::Pixels(std::uint64_t width, std::uint64_t height, bool has_opacity)
-    : luma_(height, width), opacity_(has_opacity ? height : 0, has_opacity ? width : 0) {}
-
-void Pixels::set(Eigen::Index row, Eigen::Index column, const std::uint16_t* rgba) {
-  luma_(row, column) = luma_of(rgba);
-  if (opacity_.size() > 0) opacity_(row, column) = rgba[3];
-  if (!has_first_) std::copy_n(rgba, 4, first_.begin());
-  has_first_ = true;
-  colors_differ_ = colors_differ_ || !std::equal(rgba, rgba + 3, first_.begin());
-  opacities_differ_ = opacities_differ_ || rgba[3] != first_[3];
-  const auto [least, most] = std::minmax({rgba[0], rgba[1], rgba[2]});
-  is_colored_ = is_colored_ || most - least > kColored;
-}
-
-namespace {
 
 /// Decodes PNG. libpng leaves its functions by longjmp if a file is damaged. Functions that a jump
 /// leaves or enters must not have variables with destructors, so these are all members.
@@ -91,22 +70,21 @@ class PngDecoder {
     png_read_info(png_, info_);
     return true;
   }
-  std::uint64_t width() const { return png_get_image_width(png_, info_); }
-  std::uint64_t height() const { return png_get_image_height(png_, info_); }
-
+  /// \pre read_header() succeeded
+  PictureSize size() const {
+    return {png_get_image_width(png_, info_), png_get_image_height(png_, info_),
+            (png_get_color_type(png_, info_) & PNG_COLOR_MASK_ALPHA) != 0 ||
+                png_get_valid(png_, info_, PNG_INFO_tRNS) != 0};
+  }
   std::uint64_t bits_per_pixel() const {
     return std::uint64_t{png_get_channels(png_, info_)} * png_get_bit_depth(png_, info_);
-  }
-  bool has_opacity() const {
-    return (png_get_color_type(png_, info_) & PNG_COLOR_MASK_ALPHA) != 0 ||
-           png_get_valid(png_, info_, PNG_INFO_tRNS) != 0;
   }
 
   /// Returns false on failure. Reads row by row; an interlaced picture arrives as seven smaller
   /// ones.
-  /// \pre read_header() succeeded, and `pixels` are width() x height()
-  bool read_pixels(Pixels& pixels) {
-    row_.resize(4 * width());
+  /// \pre read_header() succeeded
+  bool read_pixels(PixelSink& sink) {
+    row_.resize(4 * size().width);
     if (setjmp(png_jmpbuf(png_))) return false;
     png_set_expand_16(png_);
     png_set_gray_to_rgb(png_);
@@ -114,11 +92,13 @@ class PngDecoder {
     if (std::endian::native == std::endian::little) png_set_swap(png_);
     png_read_update_info(png_, info_);
     if (png_get_interlace_type(png_, info_) == PNG_INTERLACE_NONE) {
-      read_grid(pixels, {0, 0, 1, 1});
+      read_grid(sink, {0, 0, 1, 1});
     } else {
       for (int pass = 0; pass < PNG_INTERLACE_ADAM7_PASSES; ++pass) {
-        read_grid(pixels, {PNG_PASS_START_ROW(pass), PNG_PASS_START_COL(pass),
-                           1 << PNG_PASS_ROW_SHIFT(pass), 1 << PNG_PASS_COL_SHIFT(pass)});
+        read_grid(sink,
+                  {std::uint64_t(PNG_PASS_START_ROW(pass)), std::uint64_t(PNG_PASS_START_COL(pass)),
+                   std::uint64_t{1} << PNG_PASS_ROW_SHIFT(pass),
+                   std::uint64_t{1} << PNG_PASS_COL_SHIFT(pass)});
       }
     }
     png_read_end(png_, nullptr);
@@ -131,18 +111,17 @@ class PngDecoder {
  private:
   /// Pixels of the picture that the next pass sets.
   struct Grid {
-    Eigen::Index row, column, row_step, column_step;
+    std::uint64_t row, column, row_step, column_step;
   };
   /// \pre setjmp() was called
-  void read_grid(Pixels& pixels, const Grid& grid) {
-    const Eigen::Index rows = pixels.luma().rows(), columns = pixels.luma().cols();
+  void read_grid(PixelSink& sink, const Grid& grid) {
+    const std::uint64_t rows = png_get_image_height(png_, info_);
+    const std::uint64_t columns = png_get_image_width(png_, info_);
     if (grid.column >= columns) return;
-    for (Eigen::Index y = grid.row; y < rows; y += grid.row_step) {
+    const std::uint64_t count = (columns - grid.column + grid.column_step - 1) / grid.column_step;
+    for (std::uint64_t y = grid.row; y < rows; y += grid.row_step) {
       png_read_row(png_, reinterpret_cast<png_bytep>(row_.data()), nullptr);
-      const std::uint16_t* rgba = row_.data();
-      for (Eigen::Index x = grid.column; x < columns; x += grid.column_step, rgba += 4) {
-        pixels.set(y, x, rgba);
-      }
+      sink.take(y, grid.column, grid.column_step, {row_.data(), 4 * count});
     }
   }
 
@@ -176,19 +155,17 @@ class PngDecoder {
   throw IoError(path, "is a damaged PNG file (" + decoder.message() + "); export it again");
 }
 
-}  // namespace
-
-Pixels pixels_of_png(const std::string& path, const std::string& bytes) {
+/// Decodes into `sink`, or only the header without one.
+PictureSize decode_png(const std::string& path, const std::string& bytes, PixelSink* sink) {
   PngDecoder decoder(bytes);
   if (!decoder.read_header()) fail_to_decode(path, bytes, decoder);
-  check_pixel_count(path, decoder.width(), decoder.height(), bytes.size(),
-                    8 * kMostInflated / decoder.bits_per_pixel());
-  Pixels pixels(decoder.width(), decoder.height(), decoder.has_opacity());
-  if (!decoder.read_pixels(pixels)) fail_to_decode(path, bytes, decoder);
-  return pixels;
+  const PictureSize size = decoder.size();
+  check_pixel_count(path, size, bytes.size(), 8 * kMostInflated / decoder.bits_per_pixel());
+  if (!sink) return size;
+  sink->begin(size);
+  if (!decoder.read_pixels(*sink)) fail_to_decode(path, bytes, decoder);
+  return size;
 }
-
-namespace {
 
 /// Decodes JPEG. If a file is damaged, libjpeg calls an error function that must not return, so it
 /// leaves by longjmp. Functions that a jump leaves or enters must not have variables with
@@ -216,24 +193,25 @@ class JpegDecoder {
     jpeg_read_header(&state_, TRUE);
     return true;
   }
-  std::uint64_t width() const { return state_.image_width; }
-  std::uint64_t height() const { return state_.image_height; }
+  PictureSize size() const { return {state_.image_width, state_.image_height}; }
 
   /// True for arithmetic coding, which needs less than a bit for a block of pixels.
   bool is_arithmetic() const { return state_.arith_code; }
 
   /// Returns false on failure.
-  /// \pre read_header() succeeded, and `pixels` are width() x height()
-  bool read_pixels(Pixels& pixels) {
-    row_.resize(3 * width());
+  /// \pre read_header() succeeded
+  bool read_pixels(PixelSink& sink) {
+    row_.resize(3 * size().width);
+    rgba_.assign(4 * size().width, 0xffff);
     if (setjmp(on_error_)) return false;
     state_.out_color_space = JCS_RGB;
     jpeg_start_decompress(&state_);
     while (state_.output_scanline < state_.output_height) {
-      const Eigen::Index y = state_.output_scanline;
+      const std::uint64_t y = state_.output_scanline;
       JSAMPROW row = row_.data();
       jpeg_read_scanlines(&state_, &row, 1);
-      for (Eigen::Index x = 0; x < pixels.luma().cols(); ++x) set(pixels, y, x);
+      widen();
+      sink.take(y, 0, 1, rgba_);
     }
     jpeg_finish_decompress(&state_);
     return true;
@@ -242,14 +220,13 @@ class JpegDecoder {
   std::string message() const { return message_.data(); }
 
  private:
-  void set(Pixels& pixels, Eigen::Index y, Eigen::Index x) const {
-    // Maps 255 to 65535.
-    constexpr std::uint16_t kTo16Bits = 257;
-    std::array<std::uint16_t, 4> rgba = {0, 0, 0, 0xffff};
-    for (std::size_t c = 0; c < 3; ++c) {
-      rgba[c] = static_cast<std::uint16_t>(kTo16Bits * row_[3 * static_cast<std::size_t>(x) + c]);
+  void widen() {
+    constexpr std::uint16_t kTo16Bits = 257;  // maps 255 to 65535
+    for (std::size_t x = 0; x < row_.size() / 3; ++x) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        rgba_[4 * x + c] = static_cast<std::uint16_t>(kTo16Bits * row_[3 * x + c]);
+      }
     }
-    pixels.set(y, x, rgba.data());
   }
 
   [[noreturn]] static void fail(j_common_ptr state) {
@@ -274,6 +251,7 @@ class JpegDecoder {
 
   const std::string& bytes_;
   std::vector<unsigned char> row_;
+  std::vector<std::uint16_t> rgba_;
   jpeg_decompress_struct state_ = {};
   jpeg_progress_mgr progress_ = {};
   jpeg_error_mgr errors_ = {};
@@ -286,19 +264,78 @@ class JpegDecoder {
                           decoder.message() + "); export it again as RGB or grey");
 }
 
-}  // namespace
-
-Pixels pixels_of_jpeg(const std::string& path, const std::string& bytes) {
+PictureSize decode_jpeg(const std::string& path, const std::string& bytes, PixelSink* sink) {
   JpegDecoder decoder(bytes);
   if (!decoder.read_header()) fail_to_decode(path, decoder);
   // Huffman codes need at least a bit for each 8 x 8 block. With coarsely sampled colours, one such
   // block covers up to 16 blocks of pixels.
   constexpr std::uint64_t kHuffman = 8 * 64 * 16;
-  check_pixel_count(path, decoder.width(), decoder.height(), bytes.size(),
-                    decoder.is_arithmetic() ? kMostPixels : kHuffman);
-  Pixels pixels(decoder.width(), decoder.height(), false);
-  if (!decoder.read_pixels(pixels)) fail_to_decode(path, decoder);
-  return pixels;
+  const PictureSize size = decoder.size();
+  check_pixel_count(path, size, bytes.size(), decoder.is_arithmetic() ? kMostPixels : kHuffman);
+  if (!sink) return size;
+  sink->begin(size);
+  if (!decoder.read_pixels(*sink)) fail_to_decode(path, decoder);
+  return size;
+}
+
+PictureSize decode(const std::string& path, const std::string& bytes, PixelSink* sink) {
+  if (bytes.starts_with(kPngStart)) return decode_png(path, bytes, sink);
+  if (bytes.starts_with(kJpegStart)) return decode_jpeg(path, bytes, sink);
+  throw IoError(path, "is no image that can be read; expected PNG or JPEG");
+}
+
+/// Number of `size` bytes at `at`; 0 behind the end.
+std::uint64_t exif_number(std::string_view data, std::uint64_t at, std::uint64_t size,
+                          bool is_little_endian) {
+  std::uint64_t value = 0;
+  if (at > data.size() || size > data.size() - at) return value;
+  for (std::uint64_t i = 0; i < size; ++i) {
+    value =
+        value << 8 | static_cast<unsigned char>(data[at + (is_little_endian ? size - 1 - i : i)]);
+  }
+  return value;
+}
+
+/// Exif data of a JPEG file, from its byte order on; empty if there is none.
+std::string_view exif_data(std::string_view bytes) {
+  constexpr std::string_view kExif("Exif\0\0", 6);
+  constexpr unsigned char kApp1 = 0xe1, kScan = 0xda;
+  if (!bytes.starts_with(kJpegStart)) return {};
+  // Segments: a marker, the length with its own two bytes, content.
+  for (std::size_t at = 2; at + 4 <= bytes.size() && bytes[at] == '\xff';) {
+    const auto marker = static_cast<unsigned char>(bytes[at + 1]);
+    const auto length = exif_number(bytes, at + 2, 2, false);
+    if (marker == kScan || length < 2) return {};
+    const std::string_view content = bytes.substr(at + 4, length - 2);
+    if (marker == kApp1 && content.starts_with(kExif)) return content.substr(kExif.size());
+    at += 2 + length;
+  }
+  return {};
+}
+
+}  // namespace
+
+void decode_picture(const std::string& path, const std::string& bytes, PixelSink& sink) {
+  decode(path, bytes, &sink);
+}
+
+PictureSize picture_size(const std::string& path, const std::string& bytes) {
+  return decode(path, bytes, nullptr);
+}
+
+int exif_orientation(std::string_view bytes) {
+  constexpr std::uint64_t kOrientation = 0x0112;
+  const std::string_view data = exif_data(bytes);
+  const bool is_little = data.starts_with("II");
+  const std::uint64_t list = exif_number(data, 4, 4, is_little);
+  const std::uint64_t entries = exif_number(data, list, 2, is_little);
+  for (std::uint64_t i = 0; i < entries; ++i) {
+    const std::uint64_t entry = list + 2 + 12 * i;
+    if (exif_number(data, entry, 2, is_little) != kOrientation) continue;
+    const std::uint64_t number = exif_number(data, entry + 8, 2, is_little);
+    return number >= 1 && number <= 8 ? static_cast<int>(number) : 1;
+  }
+  return 1;
 }
 
 }  // namespace mimetra
