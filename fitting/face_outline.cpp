@@ -2,23 +2,21 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
-#include <utility>
+#include <span>
+
+#include "toolkit/mesh/surface.h"
 
 namespace mimetra {
 
 FaceOutline::FaceOutline(const MorphableModel& model) : model_(model) {
   const Triangles& triangles = model.connectivity().triangles;
-  std::map<std::pair<int, int>, std::vector<int>> of_edge;
-  for (int t = 0; t < triangles.rows(); ++t) {
-    for (int corner = 0; corner < 3; ++corner) {
-      const int a = triangles(t, corner), b = triangles(t, (corner + 1) % 3);
-      of_edge[std::minmax(a, b)].push_back(t);
-    }
-  }
-  for (const auto& [ends, of] : of_edge) {
-    edges_.push_back({ends.first, ends.second, {of[0], of.size() == 2 ? of[1] : -1}});
-  }
+  EdgeSides(model.connectivity().vertices, triangles, Collapsed::kept)
+      .for_each_edge([&](std::span<const int> sides) {
+        const int triangle = sides[0] / 3, corner = sides[0] % 3;
+        const auto [from, to] =
+            std::minmax({triangles(triangle, corner), triangles(triangle, (corner + 1) % 3)});
+        edges_.push_back({from, to, {triangle, sides.size() == 2 ? sides[1] / 3 : -1}});
+      });
 }
 
 Positions FaceOutline::neutral(const Eigen::VectorXd& alpha) const {

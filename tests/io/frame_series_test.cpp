@@ -254,6 +254,20 @@ TEST_F(OrderOfFrames, OfTimesWithoutAPointInSomeIsRefused) {
               testing::EndsWith("as many digits behind the point"));
 }
 
+TEST_F(OrderOfFrames, OfTimesThatPassAWholeSecondIsRefused) {
+  const std::vector<std::string> all = {"t_0.92", "t_0.96", "t_1.00"};
+  write_alone(all);
+  const std::string folder = folder_.path().string() + "/";
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("t_1.00.obj: may continue t_0.*.obj"),
+                               HasSubstr("'" + folder + "t_*.*.obj'"),
+                               HasSubstr("'" + folder + "t_0.*.obj'")));
+  std::vector<std::string> names;
+  for (const fs::path& frame : frames_of_pattern(folder + "t_*.*.obj").frames) {
+    names.push_back(frame.stem().string());
+  }
+  EXPECT_THAT(names, ElementsAreArray(all));
+}
+
 TEST_F(OrderOfFrames, IsAskedOfThoseThatAreTakenOnly) {
   write_frames({0, 1, 2, 3});
   write("f_1.5.obj");

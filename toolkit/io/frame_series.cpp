@@ -134,6 +134,31 @@ std::vector<fs::path> strangers_in(std::vector<fs::path>& files) {
   return strangers;
 }
 
+/// Returns "t_*.*.obj" for the series "t_0.*.obj", whose number follows a point; "" for others.
+std::string across_point(const std::string& series) {
+  const std::size_t star = series.find('*');
+  if (star == std::string::npos || star < 2 || series[star - 1] != '.') return {};
+  std::size_t first = star - 1;
+  while (first > 0 && is_digit(series[first - 1])) --first;
+  return first == star - 1 ? "" : series.substr(0, first) + '*' + series.substr(star - 1);
+}
+
+/// Throws IoError if strangers continue the series behind another number before the point, as
+/// t_1.00.obj continues t_0.96.obj.
+void check_points(const FrameSeries& found, const std::vector<fs::path>& strangers,
+                  const fs::path& folder) {
+  if (found.frames.empty()) return;
+  const std::string series = numbered(found.frames.front()).series;
+  const std::string across = across_point(series);
+  const auto stranger = std::ranges::find_if(strangers, [&across](const fs::path& file) {
+    return !across.empty() && across_point(numbered(file).series) == across;
+  });
+  if (stranger == strangers.end()) return;
+  throw IoError(stranger->string(), "may continue " + series + "; name all frames by '" +
+                                        folder_text(folder) + across + "', or some by '" +
+                                        folder_text(folder) + series + "'");
+}
+
 struct SplitFiles {
   FrameSeries series;
   std::vector<fs::path> strangers;
@@ -175,6 +200,7 @@ FrameSeries series_in_folder(std::vector<fs::path> files, const fs::path& folder
                           std::to_string(found.frames.size()) +
                           " files, and is no frame; name files by a pattern to take it for one");
   }
+  check_points(found, strangers, folder);
   check_links(found.frames);
   check_numbers(found.frames);
   check_order(found.frames);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "toolkit/correspondence/renumbering.h"
 #include "toolkit/mesh/rounding.h"
 #include "toolkit/mesh/stopwatch.h"
+#include "toolkit/mesh/surface.h"
 #include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/regions/discs.h"
@@ -437,18 +439,15 @@ double weight_between(std::span<const Pairing::Carrier> carriers, const Eigen::V
 /// Places that share an edge with each place.
 std::vector<std::vector<VertexIndex>> neighbors_of(const Triangles& triangles, Eigen::Index count) {
   std::vector<std::vector<VertexIndex>> neighbors(count);
-  for (const auto& corners : triangles.rowwise()) {
-    for (int c = 0; c < 3; ++c) {
-      const VertexIndex a = corners[c], b = corners[(c + 1) % 3];
-      if (a == b) continue;
-      neighbors[a].push_back(b);
-      neighbors[b].push_back(a);
-    }
-  }
-  for (std::vector<VertexIndex>& list : neighbors) {
-    std::ranges::sort(list);
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  }
+  EdgeSides(static_cast<int>(count), triangles, Collapsed::kept)
+      .for_each_edge([&](std::span<const int> sides) {
+        const int triangle = sides[0] / 3, corner = sides[0] % 3;
+        const VertexIndex a = triangles(triangle, corner),
+                          b = triangles(triangle, (corner + 1) % 3);
+        neighbors[a].push_back(b);
+        neighbors[b].push_back(a);
+      });
+  for (std::vector<VertexIndex>& list : neighbors) std::ranges::sort(list);
   return neighbors;
 }
 
