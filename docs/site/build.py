@@ -2,8 +2,8 @@
 
 usage: build.py MIMETRA OUT
 
-MIMETRA is the built command; OUT becomes a folder of pages that need no network and no server. What
-is made on the way lies in OUT-work.
+MIMETRA is the built command. OUT becomes a folder of pages that need no network and no server.
+Intermediate files go to OUT-work.
 """
 
 import json
@@ -21,8 +21,8 @@ SITE = ROOT / "docs" / "site"
 
 REPORT = """# A report
 
-`mimetra report` makes one page for a browser of a run: source and target in 3D, strips, components,
-Table I. This is the one of the built-in sample, as these commands make it:
+`mimetra report` makes one page of a run for a browser: source and target in 3D, strips, components
+and Table I. These commands make the report of the built-in sample:
 
 ```sh
 {commands}
@@ -42,7 +42,7 @@ REPORT_COMMANDS = (
 
 
 def version():
-    """As the CMake project says it."""
+    """The version of the CMake project."""
     return re.search(r"project\(mimetra VERSION ([0-9.]+)",
                      (ROOT / "CMakeLists.txt").read_text()).group(1)
 
@@ -52,7 +52,7 @@ def run(*command, cwd=ROOT):
 
 
 def make_report(mimetra, work, out):
-    """The report of the built-in sample; the text of the page that shows it."""
+    """Writes the report of the built-in sample and returns the text of the page that shows it."""
     folder = work / "run"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
@@ -63,7 +63,7 @@ def make_report(mimetra, work, out):
 
 
 def layout(work):
-    """Doxygen's own, with a way back to the site."""
+    """Writes Doxygen's own layout with a link back to the site."""
     path = work / "doxygen_layout.xml"
     run("doxygen", "-l", path)
     back = '<tab type="user" visible="yes" url="../index.html" title="mimetra documentation"/>'
@@ -72,7 +72,7 @@ def layout(work):
 
 
 def make_cpp(work, out):
-    """Doxygen's pages of the public headers."""
+    """Runs Doxygen on the public headers and returns their paths."""
     headers = public_headers(ROOT)
     main_page = work / "cpp_main_page.md"
     main_page.write_text(main_page_of_cpp(headers))
@@ -89,7 +89,7 @@ def make_cpp(work, out):
 
 
 def take_in_style_sheets(folder):
-    """Debian's theme imports sheets from where a web server has them: these go beside it."""
+    """Copies the style sheets that Debian's theme imports from a web server into its folder."""
     for path in folder.glob("*.css"):
         def copied(match):
             sheet = pathlib.Path("/usr/share/javascript", match.group(1))

@@ -22,7 +22,7 @@ html_theme_options = {
 
 
 def mathml(text, inline):
-    """MathML, which browsers draw without a script and a font of their own."""
+    """MathML, which browsers draw without a script or a web font."""
     return tex2mathml(text, inline)
 
 

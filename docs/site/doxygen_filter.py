@@ -1,10 +1,10 @@
-"""A header as Doxygen shall read it; its comments are written for people.
+"""Prints a header as Doxygen should read it; its comments are written for people.
 
 usage: doxygen_filter.py HEADER
 
-An @ is that of `actor@wide=1.5` and no command. What stands before a namespace is about the file.
-In the C header no comment is marked as documentation; all are but headings of sections, and what
-has several lines keeps its layout.
+An @, as in `actor@wide=1.5`, is not a Doxygen command. A comment before a namespace documents the
+file. The C header does not mark its comments as documentation: all comments except section headings
+become documentation, and comments of several lines keep their layout.
 """
 
 import re

@@ -1,4 +1,4 @@
-"""The pages of the site: documents of the repository, with links to where the site has them."""
+"""The pages of the site: documents of the repository, with links to their places on the site."""
 
 import os
 import pathlib
@@ -6,8 +6,8 @@ import posixpath
 import re
 import shutil
 
-# What the menu shows, in its order. Every document is there, or the build fails.
-# An algorithm is shown by the name of its header.
+# Entries of the menu in order. The build fails if a document is missing.
+# The menu shows an algorithm by the name of its header.
 MENU = {
     "Start": ["tutorial", "readme", "gallery", "report", "glossary"],
     "How to": ["howto/scan", "howto/arkit", "howto/videos", "howto/openmesh", "howto/plugin",
@@ -42,7 +42,7 @@ LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^()\s]+)\)")
 
 
 def page_of_header(path):
-    """The page that Doxygen makes of a header."""
+    """The name of Doxygen's page of a header."""
     return path.name.replace("_", "__").replace(".", "_8") + ".html"
 
 
@@ -51,7 +51,7 @@ def anchor_of_sample(path):
 
 
 def outside_code(text, change):
-    """The text, changed where it is not code."""
+    """Applies `change` to the text outside code."""
     kept = []
 
     def keep(match):
@@ -79,7 +79,7 @@ class Pages:
         self.made.add(name)
 
     def add_documents(self):
-        """All documents of the repository and their pictures."""
+        """Adds all documents of the repository and their pictures."""
         shutil.copytree(self.root / "docs", self.folder,
                         ignore=lambda folder, names: [
                             name for name in names if not name.endswith((".png", ".svg"))
@@ -100,7 +100,7 @@ class Pages:
         self.add(name, outside_code(text, change))
 
     def link(self, match, base, page, source):
-        """A link as the page has it."""
+        """The link, changed to its place on the site."""
         picture, text, target = match.groups()
         if re.match(r"[a-z]+:|#", target):
             return match.group()
@@ -118,7 +118,7 @@ class Pages:
             return (f'<a class="reference" href="{self.way(f"cpp/{name}", page)}">{text}</a>')
         if path.parts[0] == "samples" and (self.root / path).exists():
             return f"[{text}]({self.way('samples.md', page)}#{anchor_of_sample(path)})"
-        raise SystemExit(f"{source}: {target}: is on no page of the site")
+        raise SystemExit(f"{source}: {target}: no page of the site shows this file")
 
     @staticmethod
     def way(target, page):
@@ -126,19 +126,19 @@ class Pages:
 
     @staticmethod
     def entry(name):
-        """A line of the menu; most have their page's title."""
+        """A line of the menu; most lines show the page's title."""
         if name in TITLES:
             return f"{TITLES[name]} <{name}>"
         folder, _, last = name.rpartition("/")
         return f"{last} <{name}>" if folder == "algorithms" else name
 
     def finish(self):
-        """The menu, at the end of the first page."""
+        """Writes the menu at the end of the first page."""
         names = {name.removesuffix(".md") for name in self.made} - {"index"}
         listed = {name for names in MENU.values() for name in names}
         if names != listed:
-            raise SystemExit(f"MENU in docs/site/pages.py: lacks {sorted(names - listed)}, "
-                             f"has {sorted(listed - names)} too many")
+            raise SystemExit(f"MENU in docs/site/pages.py: add {sorted(names - listed)}, "
+                             f"remove {sorted(listed - names)}")
         lines = []
         for caption, entries in MENU.items():
             lines += ["", "```{toctree}", ":hidden:", f":caption: {caption}", "",

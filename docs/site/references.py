@@ -1,4 +1,4 @@
-"""Pages that are made of other things than documents: headers, operations, samples."""
+"""Pages about headers, operations and samples, made without a document."""
 
 import ast
 import keyword
@@ -8,14 +8,14 @@ from pages import anchor_of_sample, page_of_header
 
 CPP = """# C++ and C
 
-The public headers; each folder is a library of its own. An include names the path:
-`#include <mimetra/toolkit/mesh/mesh_sequence.h>` of an installation. A header's comment says what
-is computed, shapes, units, errors and the source. All classes and functions are also in
+The public headers; each folder is a separate library. Include a header by its path in an
+installation: `#include <mimetra/toolkit/mesh/mesh_sequence.h>`. A header's comment explains what it
+computes, shapes, units, errors and the source. All classes and functions are also in
 <a class="reference" href="cpp/index.html">one reference</a> with a search of its own.
 
 `#include <mimetra/all.h>` includes the headers of values, algorithms and files.
 
-[As a library](readme.md#as-a-library) shows a first program, [Samples](samples.md) more.
+[As a library](readme.md#as-a-library) shows a first program, and [Samples](samples.md) show more.
 """
 
 CPP_MAIN = """# C++ and C reference
@@ -26,29 +26,29 @@ The C interface is mimetra.h.
 
 SAMPLES = """# Samples
 
-Programs of one file on the built-in head, [plugins](plugins.md), and scripts. An installation has
-the programs as a project of its own, in `share/doc/mimetra/samples`.
+One-file programs on the built-in head, [plugins](plugins.md), and scripts. An installation has the
+programs as a separate project in `share/doc/mimetra/samples`.
 """
 
 PYTHON = """# Python
 
 The module `mimetra` has one function for each operation, with the command's parameters, on NumPy
-arrays. [In Python](readme.md#in-python) shows its use. `help(mimetra.transfer)` prints what this
-page says, also of operations of [plugins](plugins.md). Every function also takes `force`, `manifest`,
-`progress` and `threads`, and returns a `Result` with its outputs, `report` (a dict) and `summary`
-(text).
+arrays. [In Python](readme.md#in-python) shows its use. `help(mimetra.transfer)` prints the text
+of this page, also for operations of [plugins](plugins.md). Every function also takes `force`,
+`manifest`, `progress` and `threads`. It returns a `Result` with its outputs, `report` (a dict)
+and `summary` (text).
 """
 
 TYPES = {"flag": "bool", "integer": "int", "integer list": "Iterable[int]", "number": "float",
          "length": "float | str", "text": "str", "file": "str | PathLike", "choice": "str"}
-# What _operations.py reserves.
+# Names that _operations.py reserves.
 RESERVED = {"report", "summary", "manifest", "force"}
 LANGUAGES = {".cpp": "cpp", ".c": "c", ".py": "python", ".sh": "sh", ".slurm": "sh",
              ".txt": "cmake"}
 
 
 def public_headers(root):
-    """Headers that are installed: those under HEADERS in the lists of the folders."""
+    """Installed headers: the entries of HEADERS in the CMakeLists.txt of each folder."""
     headers = []
     for folder in ("geodesic", "toolkit", "fitting", "plugins/c", "samples/head"):
         for path in sorted((root / folder).rglob("CMakeLists.txt")):
@@ -65,14 +65,14 @@ def of_folders(headers):
 
 
 def main_page_of_cpp(headers):
-    """The first page of Doxygen's."""
+    """The first page of Doxygen's reference."""
     lines = [f"- **{folder}**: " + ", ".join(path.name for path in paths)
              for folder, paths in of_folders(headers).items()]
     return CPP_MAIN + "\n" + "\n".join(lines) + "\n"
 
 
 def cpp_page(root, headers):
-    """The page that leads there."""
+    """The page that links to Doxygen's pages."""
     lines = [CPP]
     for folder, paths in of_folders(headers).items():
         lines += [f"## {folder}", "", "| header | declares |", "| --- | --- |"]
@@ -96,7 +96,7 @@ def declared(path):
 
 
 def samples_page(root):
-    """Sources of the samples."""
+    """The page of the samples' sources."""
     samples = root / "samples"
     groups = {"Programs": samples.glob("*.cpp"), "samples/plugin": (samples / "plugin").iterdir(),
               "samples/cluster": (samples / "cluster").iterdir(),
@@ -124,7 +124,7 @@ def python_name(name):
 
 
 def in_python(root):
-    """Operations that the table of hosts says Python has."""
+    """Operations with a "yes" under Python in the table of docs/plugins.md."""
     table = (root / "docs" / "plugins.md").read_text()
     rows = [[cell.strip() for cell in line.strip("| ").split("|")]
             for line in table.splitlines() if line.startswith("| ")]
@@ -134,7 +134,7 @@ def in_python(root):
 
 
 def python_page(root, table):
-    """Functions of the table of operations, values and errors of the module's docstrings."""
+    """Functions from the table of operations; values and errors from the module's docstrings."""
     module = root / "plugins" / "python" / "mimetra"
     lines = [PYTHON, "## Values", "", *classes(module / "_data.py", "Data")]
     lines += ["## Errors", "", *classes(module / "_errors.py", "Error"), "## Functions", ""]
@@ -146,7 +146,7 @@ def python_page(root, table):
 
 
 def classes(path, base):
-    """A class of a module and those made of it, with their docstrings."""
+    """A class of a module and its subclasses, with their docstrings."""
     lines = []
     for node in ast.parse(path.read_text()).body:
         if not isinstance(node, ast.ClassDef) or node.name.startswith("_"):
@@ -168,7 +168,7 @@ def call_of(node):
 
 
 def function(operation):
-    """One function: its call, and what it takes."""
+    """One function: its call and its arguments."""
     inputs = operation.get("inputs", [])
     outputs = operation.get("outputs", [])
     first = [python_name(each["name"]) for each in inputs
@@ -186,7 +186,7 @@ def function(operation):
         lines.append(row(each["name"], TYPES[each["kind"]], shown, each["help"] + notes(each)))
     for each in outputs:
         lines.append(row(each["name"], "bool or path", str(not each["optional"]),
-                         "makes it, or writes it: " + each["help"]))
+                         "True makes it, a path writes it: " + each["help"]))
     return [*lines, ""]
 
 
@@ -196,7 +196,7 @@ def row(name, kind, default, text):
 
 
 def notes(parameter):
-    """Choices, range and unit."""
+    """Choices, range and unit of a parameter."""
     texts = []
     if parameter.get("choices"):
         texts.append("one of " + ", ".join(f"`{each}`" for each in parameter["choices"]))
