@@ -105,25 +105,6 @@ TEST_F(Hdf5, RowsOfBlocksThatAreKeptInAFileAreThoseOfTheLibrary) {
   EXPECT_TRUE(std::ranges::equal(rows, std::span(values).subspan(500 * 3300, 3 * 3300)));
 }
 
-TEST_F(Hdf5, OfTheLatestFormatIsReadWhereItHasFewParts) {
-  const auto values = counted_up({6, 4});
-  {
-    const Hdf5Made made(file_, true);
-    made.add("contiguous", {6, 4}, values);
-    made.add("one_block", {6, 4}, values, H5T_IEEE_F64LE,
-             in_chunks({6, 4}, [](hid_t set) { H5Pset_deflate(set, 4); }));
-    made.add("blocks", {6, 4}, values, H5T_IEEE_F64LE, in_chunks({2, 4}));
-  }
-  EXPECT_EQ(Hdf5File(file_).dataset("contiguous").values(), values);
-  EXPECT_EQ(Hdf5File(file_).dataset("one_block").values(), values);
-  EXPECT_THAT(message_of("blocks"), HasSubstr("h5repack"));
-  {
-    const Hdf5Made made(file_, true);
-    for (int i = 0; i < 20; ++i) made.add("set" + std::to_string(i), {6, 4}, values);
-  }
-  EXPECT_THAT(message_of("set0"), HasSubstr("h5repack"));
-}
-
 TEST_F(Hdf5, ThatLeadsElsewhereIsRefused) {
   std::ofstream(folder_ / "secret") << std::string(1000, 's');
   const auto values = counted_up({4, 3});

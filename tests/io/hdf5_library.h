@@ -31,12 +31,14 @@ class Hdf5Made {
 
   hid_t id() const { return file_; }
 
-  /// Numbers of a stored type; `change` sets how. Without values nothing is written.
+  /// Numbers of a stored type; `change` sets how. Without values nothing is written. `most` are the
+  /// sizes that the dataset may be extended to, if these are others.
   void add(const std::string& name, const Sizes& sizes, const std::vector<double>& values,
-           hid_t stored = H5T_IEEE_F64LE, const Change& change = {}) const {
+           hid_t stored = H5T_IEEE_F64LE, const Change& change = {}, const Sizes& most = {}) const {
     const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
     if (change) change(creation);
-    const hid_t space = H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr);
+    const hid_t space = H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(),
+                                         most.empty() ? nullptr : most.data());
     const hid_t set =
         H5Dcreate2(file_, name.c_str(), stored, space, H5P_DEFAULT, creation, H5P_DEFAULT);
     EXPECT_GE(set, 0) << name;
@@ -46,6 +48,13 @@ class Hdf5Made {
     H5Dclose(set);
     H5Sclose(space);
     H5Pclose(creation);
+  }
+
+  /// Changes the sizes of a dataset.
+  void resize(const std::string& name, const Sizes& sizes) const {
+    const hid_t set = H5Dopen2(file_, name.c_str(), H5P_DEFAULT);
+    EXPECT_GE(H5Dset_extent(set, sizes.data()), 0) << name;
+    H5Dclose(set);
   }
 
  private:

@@ -1,8 +1,10 @@
 #include "toolkit/io/hdf5_fields.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "toolkit/io/bytes.h"
+#include "toolkit/io/hdf5_parts.h"
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {
@@ -51,24 +53,6 @@ void Hdf5Bytes::fail_damaged(const std::string& what) const {
 namespace {
 
 using Links = std::map<std::string, std::optional<std::uint64_t>>;
-
-/// Reads parts that must not overlap. Together they must not exceed the file, so that reading ends
-/// even if parts refer to each other in a circle.
-class Hdf5Parts {
- public:
-  explicit Hdf5Parts(const Hdf5Bytes& file) : file_(file), left_(file.size()) {}
-
-  std::string at(std::uint64_t address, std::uint64_t bytes) {
-    // Every part counts one byte more than it has, so that circles of empty parts end as well.
-    if (bytes >= left_) file_.fail_damaged("parts of it overlap, or lie outside of it");
-    left_ -= bytes + 1;
-    return file_.at(address, bytes);
-  }
-
- private:
-  const Hdf5Bytes& file_;
-  std::uint64_t left_;
-};
 
 /// One run of messages of an object's header.
 struct HeaderBlock {
@@ -139,18 +123,16 @@ std::vector<Hdf5Message> messages_of_version_2(const Hdf5Bytes& file, std::uint6
   if (flags & 0x20) head.skip(16);
   if (flags & 0x10) head.skip(4);
   const auto bytes = head.number(std::size_t{1} << (flags & 3));
-  std::vector<HeaderBlock> blocks;
+  const std::uint64_t prefix_bytes = prefix.size() - head.left();
+  if (bytes > file.size()) file.fail_damaged("a part of it lies outside of it");
+  std::vector<HeaderBlock> blocks = {{address, prefix_bytes + bytes + kChecksum}};
   std::vector<Hdf5Message> messages;
-  const bool ordered = (flags & 4) != 0;
-  const std::string first = parts.at(address + (prefix.size() - head.left()), bytes);
-  take_messages_of_version_2(file, {file, first}, ordered, messages, blocks);
   for (std::size_t block = 0; block < blocks.size(); ++block) {
-    if (blocks[block].bytes < kMagic + kChecksum) file.fail_damaged("a header ends early");
-    const std::string more = parts.at(blocks[block].address, blocks[block].bytes);
-    if (!more.starts_with("OCHK")) file.fail_damaged("a header is not continued where it says");
-    take_messages_of_version_2(
-        file, {file, std::string_view(more).substr(kMagic, more.size() - kMagic - kChecksum)},
-        ordered, messages, blocks);
+    const std::string run =
+        parts.sealed(blocks[block].address, blocks[block].bytes, block == 0 ? "OHDR" : "OCHK");
+    Hdf5Fields fields(file, run);
+    fields.skip(block == 0 ? prefix_bytes : kMagic);
+    take_messages_of_version_2(file, fields, (flags & 4) != 0, messages, blocks);
   }
   return messages;
 }
@@ -203,15 +185,31 @@ void add_link(const Hdf5Bytes& file, std::string_view message, Links& links) {
   links[name] = kind == kHardLink ? std::optional(fields.address()) : std::nullopt;
 }
 
-/// True if a message refers to a heap of links or attributes. Groups of the latest format use a
-/// heap for more than a few.
-bool is_dense(const Hdf5Bytes& file, const Hdf5Message& message) {
-  Hdf5Fields fields(file, message.body);
+/// Links or attributes that a group stores in a heap, as messages. Groups of the latest format do
+/// so if they have more than a few.
+std::vector<Hdf5Message> messages_in_heap(const Hdf5Bytes& file, const Hdf5Message& info) {
+  enum : unsigned { kLinksByName = 5, kAttributesByName = 8 };
+  const bool of_links = info.type == Hdf5Message::link_info;
+  Hdf5Fields fields(file, info.body);
   fields.skip(1);
-  const auto flags = fields.byte();
-  const std::size_t index = message.type == Hdf5Message::link_info ? 8 : 2;
-  if (flags & 1) fields.skip(index);
-  return fields.address() != kNowhere;
+  if (fields.byte() & 1) fields.skip(of_links ? 8 : 2);
+  const auto heap_at = fields.address();
+  if (heap_at == kNowhere) return {};
+  Hdf5Heap heap(file, heap_at);
+  std::vector<Hdf5Message> messages;
+  for (const std::string& record :
+       hdf5_records(file, fields.address(), of_links ? kLinksByName : kAttributesByName)) {
+    Hdf5Fields named(file, record);
+    if (of_links) named.skip(4);
+    const std::string_view id = named.take(of_links ? 7 : 8);
+    const bool is_shared = !of_links && (named.byte() & 2) != 0;
+    auto body = heap.object(id);
+    // Objects outside of the heap are too large for a single number or a usual name.
+    if (!body) continue;
+    messages.push_back(
+        {of_links ? Hdf5Message::link : Hdf5Message::attribute, is_shared, std::move(*body)});
+  }
+  return messages;
 }
 
 }  // namespace
@@ -255,11 +253,18 @@ std::uint64_t hdf5_root(const Hdf5Bytes& file) {
   const auto end = fields.address();
   // Older versions store the root as a link without a name.
   if (version < 2) fields.skip(16);
+  const auto root = fields.address();
+  if (version >= 2) {
+    const std::size_t sealed = bytes.size() - fields.left();
+    if (fields.number(4) != hdf5_checksum(std::string_view(bytes).substr(0, sealed))) {
+      file.fail_damaged("a checksum is wrong");
+    }
+  }
   if (end > file.size()) {
     file.fail("is truncated: " + std::to_string(file.size()) + " bytes, expected " +
               std::to_string(end));
   }
-  return fields.address();
+  return root;
 }
 
 std::vector<Hdf5Message> hdf5_messages(const Hdf5Bytes& file, std::uint64_t address) {
@@ -267,6 +272,16 @@ std::vector<Hdf5Message> hdf5_messages(const Hdf5Bytes& file, std::uint64_t addr
   if (head == "OHDR") return messages_of_version_2(file, address);
   if (head[0] != 1) file.fail_damaged("an object is not where it says");
   return messages_of_version_1(file, address);
+}
+
+std::vector<Hdf5Message> hdf5_group(const Hdf5Bytes& file, std::uint64_t address) {
+  auto messages = hdf5_messages(file, address);
+  for (std::size_t i = 0, count = messages.size(); i < count; ++i) {
+    const auto type = messages[i].type;
+    if (type != Hdf5Message::link_info && type != Hdf5Message::attribute_info) continue;
+    std::ranges::move(messages_in_heap(file, messages[i]), std::back_inserter(messages));
+  }
+  return messages;
 }
 
 std::map<std::string, std::optional<std::uint64_t>> hdf5_links(
@@ -277,58 +292,26 @@ std::map<std::string, std::optional<std::uint64_t>> hdf5_links(
       links.merge(links_of_symbol_table(file, message.body));
     } else if (message.type == Hdf5Message::link) {
       add_link(file, message.body, links);
-    } else if ((message.type == Hdf5Message::link_info ||
-                message.type == Hdf5Message::attribute_info) &&
-               is_dense(file, message)) {
-      file.fail(
-          "is in HDF5's latest format, of which only files with few parts are read; rewrite "
-          "it by `h5repack IN.h5 OUT.h5`");
     }
   }
   return links;
 }
 
-std::vector<Hdf5Leaf> hdf5_leaves(const Hdf5Bytes& file, std::uint64_t root, unsigned tree_type,
-                                  std::size_t key_bytes) {
-  Hdf5Parts parts(file);
-  std::vector<Hdf5Leaf> leaves;
-  std::vector<std::uint64_t> nodes = {root};
-  while (!nodes.empty()) {
-    const auto node = nodes.back();
-    nodes.pop_back();
-    const std::string head = parts.at(node, 24);
-    Hdf5Fields fields(file, head);
-    if (fields.take(4) != "TREE" || fields.byte() != tree_type) {
-      file.fail_damaged("an index is not where it says");
-    }
-    const bool is_leaf = fields.byte() == 0;
-    const auto count = fields.number(2);
-    const std::string children = parts.at(node + 24, count * (key_bytes + 8));
-    Hdf5Fields child(file, children);
-    while (child.left() >= key_bytes + 8) {
-      std::string key(child.take(key_bytes));
-      const auto address = child.address();
-      if (is_leaf) {
-        leaves.push_back({std::move(key), address});
-      } else {
-        nodes.push_back(address);
-      }
-    }
-  }
-  return leaves;
-}
-
-std::vector<std::uint64_t> hdf5_shape(const Hdf5Bytes& file, std::string_view message) {
+Hdf5Shape hdf5_shape(const Hdf5Bytes& file, std::string_view message) {
   Hdf5Fields fields(file, message);
   const auto version = fields.byte();
   const auto rank = fields.byte();
-  fields.skip(1);
+  const bool has_most = (fields.byte() & 1) != 0;
   constexpr std::uint64_t kNull = 2;
   const auto kind = fields.byte();
   if (version == 1) fields.skip(4);
-  if (version == 2 && kind == kNull) return {0};
-  std::vector<std::uint64_t> shape;
-  for (std::uint64_t d = 0; d < rank; ++d) shape.push_back(fields.address());
+  if (version == 2 && kind == kNull) return {{0}, {0}};
+  Hdf5Shape shape;
+  for (std::uint64_t d = 0; d < rank; ++d) shape.sizes.push_back(fields.address());
+  for (const std::uint64_t size : shape.sizes) {
+    shape.most.push_back(has_most ? fields.address() : size);
+    if (shape.most.back() < size) file.fail_damaged("a dataset is larger than it may become");
+  }
   return shape;
 }
 

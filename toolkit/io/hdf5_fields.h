@@ -67,7 +67,7 @@ struct Hdf5Type {
   std::endian order = std::endian::little;
 };
 
-/// Address that HDF5 writes for missing data.
+/// Address that HDF5 writes for missing data, and size of dimensions without limit.
 constexpr std::uint64_t kNowhere = ~std::uint64_t{0};
 
 /// Walks through a run of bytes. Throws IoError if it ends too early.
@@ -96,20 +96,19 @@ std::uint64_t hdf5_root(const Hdf5Bytes& file);
 /// Reads all messages of the object with the header at `address`.
 std::vector<Hdf5Message> hdf5_messages(const Hdf5Bytes& file, std::uint64_t address);
 
+/// Reads all messages of a group, also the links and attributes outside of its header.
+std::vector<Hdf5Message> hdf5_group(const Hdf5Bytes& file, std::uint64_t address);
+
 /// Links of a group: the address of each object's header, none for links to elsewhere.
 std::map<std::string, std::optional<std::uint64_t>> hdf5_links(
     const Hdf5Bytes& file, const std::vector<Hdf5Message>& messages);
 
-/// Leaves of a B-tree of version 1, each with the key before it (`key_bytes`).
-struct Hdf5Leaf {
-  std::string key;
-  std::uint64_t address;
+/// Sizes of the dimensions of a dataspace message, and the most that they can be resized to:
+/// kNowhere if that is unlimited.
+struct Hdf5Shape {
+  std::vector<std::uint64_t> sizes, most;
 };
-std::vector<Hdf5Leaf> hdf5_leaves(const Hdf5Bytes& file, std::uint64_t root, unsigned tree_type,
-                                  std::size_t key_bytes);
-
-/// Sizes of the dimensions of a dataspace message.
-std::vector<std::uint64_t> hdf5_shape(const Hdf5Bytes& file, std::string_view message);
+Hdf5Shape hdf5_shape(const Hdf5Bytes& file, std::string_view message);
 
 /// Number type of a datatype message; none if the values are not numbers that processors support.
 std::optional<Hdf5Type> hdf5_type(const Hdf5Bytes& file, std::string_view message);

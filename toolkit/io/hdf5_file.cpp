@@ -10,6 +10,7 @@
 #include <zlib.h>
 
 #include "toolkit/io/bytes.h"
+#include "toolkit/io/hdf5_chunks.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/text.h"
@@ -61,6 +62,8 @@ std::vector<Filter> filters_of(const Hdf5Dataset& dataset, const Hdf5Bytes& file
   const auto version = fields.byte();
   const auto count = fields.byte();
   if (version == 1) fields.skip(6);
+  constexpr std::uint64_t kMostFilters = 32;
+  if (count > kMostFilters) file.fail_damaged("a dataset has too many filters");
   std::vector<Filter> filters;
   for (std::uint64_t i = 0; i < count; ++i) {
     const auto id = fields.number(2);
@@ -81,13 +84,6 @@ std::vector<Filter> filters_of(const Hdf5Dataset& dataset, const Hdf5Bytes& file
   return filters;
 }
 
-struct Chunk {
-  std::uint64_t address = kNowhere;
-  std::uint64_t stored_bytes = 0;
-  /// Bit i is set if filter i was not applied.
-  std::uint64_t left_out = 0;
-};
-
 std::string inflated(const Hdf5Dataset& dataset, std::string_view stored, std::size_t most) {
   std::string bytes(most, '\0');
   auto size = static_cast<uLongf>(bytes.size());
@@ -97,6 +93,37 @@ std::string inflated(const Hdf5Dataset& dataset, std::string_view stored, std::s
   if (status != Z_OK) dataset.fail("cannot be inflated; the file is damaged");
   bytes.resize(size);
   return bytes;
+}
+
+/// Sum of 16-bit numbers, most significant byte first, which the filter of this name appends to a
+/// block. It counts modulo 65535; sums of 0 become 65535 unless all bytes are 0.
+///
+/// [Fletcher. An arithmetic checksum for serial transmissions. IEEE Trans. Comm. 30(1), 1982]
+std::uint32_t fletcher32(std::string_view bytes) {
+  const auto folded = [](std::uint64_t sum) {
+    while (sum > 0xffff) sum = (sum & 0xffff) + (sum >> 16);
+    return sum;
+  };
+  std::uint64_t first = 0, second = 0;
+  for (std::size_t i = 0; i < bytes.size(); i += 2) {
+    const auto high = static_cast<unsigned char>(bytes[i]);
+    const auto low = i + 1 < bytes.size() ? static_cast<unsigned char>(bytes[i + 1]) : 0u;
+    first = folded(first + (high * 256u + low));
+    second += first;
+  }
+  return static_cast<std::uint32_t>(folded(second) << 16 | first);
+}
+
+/// Checks the sum at the end of a block and cuts it off.
+void take_sum(const Hdf5Dataset& dataset, std::string& bytes) {
+  constexpr std::size_t kSum = sizeof(std::uint32_t);
+  const std::size_t size = bytes.size() - std::min(bytes.size(), kSum);
+  const std::string_view all = bytes;
+  if (bytes.size() < kSum || number_at<std::uint32_t>(&bytes[size], std::endian::little) !=
+                                 fletcher32(all.substr(0, size))) {
+    dataset.fail("has a wrong checksum; the file is damaged");
+  }
+  bytes.resize(size);
 }
 
 /// Undoes the shuffle filter, which stores all first bytes of the numbers, then all second bytes,
@@ -152,52 +179,19 @@ class DecodedBlocks {
 /// neighbouring rows are usually read next.
 class ChunkedRows : public Storage {
  public:
-  /// `extents` contains the size of a block in each dimension. \pre no extent is 0
-  ChunkedRows(const Hdf5Dataset& dataset, std::shared_ptr<const Hdf5Bytes> file,
-              std::vector<std::uint64_t> extents, std::vector<Filter> filters)
+  /// Takes all blocks in order. Throws IoError if together they are larger than the file.
+  ChunkedRows(const Hdf5Dataset& dataset, std::shared_ptr<const Hdf5Bytes> file, Hdf5Grid grid,
+              std::vector<Filter> filters, std::vector<Hdf5Chunk> chunks)
       : dataset_(dataset),
         file_(std::move(file)),
-        shape_(dataset.shape()),
-        extents_(std::move(extents)),
+        grid_(std::move(grid)),
         filters_(std::move(filters)),
         number_(dataset.type().bytes),
         row_bytes_(dataset.row_size() * number_),
-        chunk_bytes_(number_) {
-    // Largest block, since a block is decoded as a whole.
-    constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
-    for (std::size_t d = 0; d < shape_.size(); ++d) {
-      // A block may reach beyond the dataset, so the dataset does not limit its size.
-      if (chunk_bytes_ > kMostBytes / extents_[d]) {
-        dataset_.fail("is cut into blocks of more than 1 GiB; rewrite it by `h5repack` with less");
-      }
-      chunk_bytes_ *= extents_[d];
-      counts_.push_back((shape_[d] + extents_[d] - 1) / extents_[d]);
-    }
-  }
-
-  std::uint64_t count() const {
-    std::uint64_t count = 1;
-    for (const std::uint64_t of_dimension : counts_) count *= of_dimension;
-    return count;
-  }
-  std::uint64_t chunk_bytes() const { return chunk_bytes_; }
-
-  /// Number of the block that starts at `offsets`.
-  std::uint64_t index_of(const std::vector<std::uint64_t>& offsets) const {
-    std::uint64_t index = 0;
-    for (std::size_t d = 0; d < shape_.size(); ++d) {
-      if (offsets[d] % extents_[d] != 0 || offsets[d] / extents_[d] >= counts_[d]) {
-        file_->fail_damaged("a block lies outside of its dataset");
-      }
-      index = index * counts_[d] + offsets[d] / extents_[d];
-    }
-    return index;
-  }
-
-  /// Takes all blocks in order. Throws IoError if together they are larger than the file.
-  void set(std::vector<Chunk> chunks) {
+        chunks_(std::move(chunks)) {
+    if (chunks_.size() != grid_.count()) dataset_.fail("holds no numbers for a part of it");
     std::uint64_t left = file_->size();
-    for (const Chunk& chunk : chunks) {
+    for (const Hdf5Chunk& chunk : chunks_) {
       if (chunk.address == kNowhere) dataset_.fail("holds no numbers for a part of it");
       if (chunk.stored_bytes > left || !file_->holds(chunk.address, chunk.stored_bytes)) {
         dataset_.fail("claims more numbers than the file holds");
@@ -205,18 +199,17 @@ class ChunkedRows : public Storage {
       left -= chunk.stored_bytes;
       const std::uint64_t most =
           is_deflated(chunk) ? kMostInflated * (chunk.stored_bytes + 1) : chunk.stored_bytes;
-      if (chunk_bytes_ > most) dataset_.fail("claims more numbers than the file holds");
+      if (grid_.block_bytes > most) dataset_.fail("claims more numbers than the file holds");
     }
-    chunks_ = std::move(chunks);
   }
 
   void read_rows(std::uint64_t first, std::uint64_t rows, char* to) const override {
     for (std::uint64_t row = first; row < first + rows;) {
-      const std::uint64_t slab = row / extents_[0], begin = slab * extents_[0];
-      const std::uint64_t end = std::min({begin + extents_[0], shape_[0], first + rows});
+      const std::uint64_t slab = row / grid_.extents[0], begin = slab * grid_.extents[0];
+      const std::uint64_t end = std::min({begin + grid_.extents[0], grid_.sizes[0], first + rows});
       const auto blocks = blocks_of(slab);
-      const std::uint64_t of_slab = chunks_.size() / counts_[0];
-      const std::uint64_t in_block = chunk_bytes_ / extents_[0];
+      const std::uint64_t of_slab = chunks_.size() / grid_.counts[0];
+      const std::uint64_t in_block = grid_.block_bytes / grid_.extents[0];
       std::string held;
       for (std::uint64_t i = 0; i < of_slab; ++i) {
         const char* const bytes =
@@ -229,7 +222,7 @@ class ChunkedRows : public Storage {
   }
 
  private:
-  bool is_deflated(const Chunk& chunk) const {
+  bool is_deflated(const Hdf5Chunk& chunk) const {
     for (std::size_t i = 0; i < filters_.size(); ++i) {
       if (filters_[i] == Filter::deflate && (chunk.left_out >> i & 1) == 0) return true;
     }
@@ -241,8 +234,8 @@ class ChunkedRows : public Storage {
     const std::lock_guard lock(mutex_);
     if (kept_ && kept_slab_ == slab) return kept_;
     kept_.reset();
-    const std::uint64_t of_slab = chunks_.size() / counts_[0];
-    auto blocks = std::make_shared<DecodedBlocks>(of_slab, chunk_bytes_);
+    const std::uint64_t of_slab = chunks_.size() / grid_.counts[0];
+    auto blocks = std::make_shared<DecodedBlocks>(of_slab, grid_.block_bytes);
     for (std::uint64_t i = 0; i < of_slab; ++i) {
       blocks->put(i, decoded(chunks_[slab * of_slab + i]));
     }
@@ -251,20 +244,20 @@ class ChunkedRows : public Storage {
     return kept_;
   }
 
-  std::string decoded(const Chunk& chunk) const {
+  std::string decoded(const Hdf5Chunk& chunk) const {
     constexpr std::size_t kChecksum = 4;
     std::string bytes = file_->at(chunk.address, chunk.stored_bytes);
     for (std::size_t i = filters_.size(); i > 0; --i) {
       if (chunk.left_out >> (i - 1) & 1) continue;
       if (filters_[i - 1] == Filter::fletcher32) {
-        bytes.resize(bytes.size() - std::min(bytes.size(), kChecksum));
+        take_sum(dataset_, bytes);
       } else if (filters_[i - 1] == Filter::shuffle) {
         bytes = unshuffled(bytes, number_);
       } else {
-        bytes = inflated(dataset_, bytes, chunk_bytes_ + kChecksum * filters_.size());
+        bytes = inflated(dataset_, bytes, grid_.block_bytes + kChecksum * filters_.size());
       }
     }
-    if (bytes.size() < chunk_bytes_) dataset_.fail("is truncated: a block of it is too short");
+    if (bytes.size() < grid_.block_bytes) dataset_.fail("is truncated: a block of it is too short");
     return bytes;
   }
 
@@ -272,12 +265,12 @@ class ChunkedRows : public Storage {
   void copy_block(const char* from, std::uint64_t index, std::uint64_t rows, char* to) const {
     // At most three dimensions: rows, columns, and the numbers of one element.
     std::array<std::uint64_t, 3> size = {1, 1, 1}, extent = {1, 1, 1}, begin = {0, 0, 0};
-    for (std::size_t d = shape_.size(); d > 0; --d) {
-      size[d - 1] = shape_[d - 1];
-      extent[d - 1] = extents_[d - 1];
+    for (std::size_t d = grid_.sizes.size(); d > 0; --d) {
+      size[d - 1] = grid_.sizes[d - 1];
+      extent[d - 1] = grid_.extents[d - 1];
       if (d == 1) break;
-      begin[d - 1] = index % counts_[d - 1] * extents_[d - 1];
-      index /= counts_[d - 1];
+      begin[d - 1] = index % grid_.counts[d - 1] * grid_.extents[d - 1];
+      index /= grid_.counts[d - 1];
     }
     const std::uint64_t columns = std::min(extent[1], size[1] - begin[1]);
     const std::size_t run = std::min(extent[2], size[2] - begin[2]) * number_;
@@ -292,99 +285,68 @@ class ChunkedRows : public Storage {
 
   const Hdf5Dataset dataset_;
   std::shared_ptr<const Hdf5Bytes> file_;
-  std::vector<std::uint64_t> shape_, extents_, counts_;
+  Hdf5Grid grid_;
   std::vector<Filter> filters_;
   std::size_t number_;
   std::uint64_t row_bytes_;
-  std::uint64_t chunk_bytes_;
-  std::vector<Chunk> chunks_;
+  std::vector<Hdf5Chunk> chunks_;
 
   mutable std::mutex mutex_;
   mutable std::uint64_t kept_slab_ = 0;
   mutable std::shared_ptr<const DecodedBlocks> kept_;
 };
 
-/// Blocks in the list of a B-tree of version 1; empty if some are missing.
-std::vector<Chunk> chunks_of_tree(const Hdf5Bytes& file, const ChunkedRows& rows, std::size_t rank,
-                                  std::uint64_t tree) {
-  // A key contains the size, the filters not applied, and the offset in each dimension and within a
-  // number.
-  const std::size_t key_bytes = 8 + 8 * (rank + 1);
-  const auto leaves =
-      tree == kNowhere ? std::vector<Hdf5Leaf>{} : hdf5_leaves(file, tree, 1, key_bytes);
-  if (leaves.size() != rows.count()) return {};
-  std::vector<Chunk> chunks(leaves.size());
-  for (const Hdf5Leaf& leaf : leaves) {
-    Hdf5Fields key(file, leaf.key);
-    const auto bytes = key.number(4), left_out = key.number(4);
-    std::vector<std::uint64_t> offsets;
-    for (std::size_t d = 0; d < rank; ++d) offsets.push_back(key.number(8));
-    chunks[rows.index_of(offsets)] = {leaf.address, bytes, left_out};
-  }
-  return chunks;
-}
-
-/// Lists of blocks in the latest format.
-enum class ChunkIndex : std::uint64_t { single = 1, implicit = 2 };
-
-std::vector<Chunk> chunks_of_index(const Hdf5Dataset& dataset, const ChunkedRows& rows,
-                                   Hdf5Fields& fields, bool has_filtered_size) {
-  const auto index = ChunkIndex(fields.byte());
-  if (index == ChunkIndex::single && rows.count() == 1) {
-    Chunk chunk{0, rows.chunk_bytes(), 0};
-    if (has_filtered_size) {
-      chunk.stored_bytes = fields.address();
-      chunk.left_out = fields.number(4);
+/// Grid of a dataset's blocks with these extents, the last of which are the bytes of a number.
+Hdf5Grid grid_of(const Hdf5Dataset& dataset, const std::vector<std::uint64_t>& most,
+                 std::vector<std::uint64_t> extents) {
+  extents.pop_back();
+  Hdf5Grid grid{dataset.shape(), std::move(extents), {}, {}, dataset.type().bytes};
+  // Largest block, since a block is decoded as a whole.
+  constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
+  for (std::size_t d = 0; d < most.size(); ++d) {
+    const std::uint64_t extent = grid.extents[d];
+    // A block may reach beyond the dataset, so the dataset does not limit its size.
+    if (grid.block_bytes > kMostBytes / extent) {
+      dataset.fail("is cut into blocks of more than 1 GiB; rewrite it by `h5repack` with less");
     }
-    chunk.address = fields.address();
-    return {chunk};
+    grid.block_bytes *= extent;
+    const auto blocks = [extent](std::uint64_t size) {
+      return size / extent + (size % extent > 0);
+    };
+    grid.counts.push_back(blocks(grid.sizes[d]));
+    grid.most.push_back(most[d] == kNowhere ? kNowhere : blocks(most[d]));
   }
-  if (index != ChunkIndex::implicit) {
-    dataset.fail(
-        "is listed in HDF5's latest format, which is not read; rewrite it by "
-        "`h5repack IN.h5 OUT.h5`");
-  }
-  const auto address = fields.address();
-  std::vector<Chunk> chunks;
-  if (address == kNowhere) return chunks;
-  for (std::uint64_t i = 0; i < rows.count(); ++i) {
-    chunks.push_back({address + i * rows.chunk_bytes(), rows.chunk_bytes(), 0});
-  }
-  return chunks;
+  return grid;
 }
 
 std::shared_ptr<const Storage> chunked(const Hdf5Dataset& dataset,
                                        const std::shared_ptr<const Hdf5Bytes>& file,
-                                       Hdf5Fields& fields, std::uint64_t version,
-                                       const Hdf5Message* filters) {
-  constexpr std::uint64_t kFilteredSize = 2;
+                                       const std::vector<std::uint64_t>& most, Hdf5Fields& fields,
+                                       std::uint64_t version, const Hdf5Message* filter_message) {
   const auto flags = version == 4 ? fields.byte() : 0;
   const auto dimensions = fields.byte();
-  const std::size_t rank = dataset.shape().size();
-  if (dimensions != rank + 1) file->fail_damaged("a dataset's blocks have another shape");
+  if (dimensions != most.size() + 1) file->fail_damaged("a dataset's blocks have another shape");
   const auto tree = version == 4 ? kNowhere : fields.address();
   const std::size_t width = version == 4 ? fields.byte() : 4;
   if (width < 1 || width > 8) file->fail_damaged("a dataset's blocks have no size");
   std::vector<std::uint64_t> extents;
-  for (std::size_t d = 0; d <= rank; ++d) {
+  for (std::size_t d = 0; d < dimensions; ++d) {
     extents.push_back(fields.number(width));
     if (extents.back() == 0) file->fail_damaged("a dataset's blocks have no size");
   }
-  extents.pop_back();
-  auto rows = std::make_shared<ChunkedRows>(dataset, file, std::move(extents),
-                                            filters_of(dataset, *file, filters));
+  const Hdf5Grid grid = grid_of(dataset, most, std::move(extents));
   // Every block takes at least one byte of the file.
-  if (rows->count() > file->size()) dataset.fail("claims more numbers than the file holds");
-  auto chunks = version == 4 ? chunks_of_index(dataset, *rows, fields, (flags & kFilteredSize) != 0)
-                             : chunks_of_tree(*file, *rows, rank, tree);
-  if (chunks.size() != rows->count()) dataset.fail("holds no numbers for a part of it");
-  rows->set(std::move(chunks));
-  return rows;
+  if (grid.count() > file->size()) dataset.fail("claims more numbers than the file holds");
+  auto filters = filters_of(dataset, *file, filter_message);
+  auto chunks = version == 4 ? hdf5_chunks_of_index(*file, grid, fields, flags, !filters.empty())
+                             : hdf5_chunks_of_tree(*file, grid, tree);
+  return std::make_shared<ChunkedRows>(dataset, file, grid, std::move(filters), std::move(chunks));
 }
 
 /// Source of the dataset's rows, from the layout and filter messages. Throws IoError.
 std::shared_ptr<const Storage> hdf5_storage(const Hdf5Dataset& dataset,
                                             std::shared_ptr<const Hdf5Bytes> file,
+                                            const std::vector<std::uint64_t>& most,
                                             const Hdf5Message& layout, const Hdf5Message* filters) {
   enum : std::uint64_t { kCompact, kContiguous, kChunked, kVirtual };
   constexpr std::size_t kMostDimensions = 3;
@@ -416,7 +378,7 @@ std::shared_ptr<const Storage> hdf5_storage(const Hdf5Dataset& dataset,
   if (rank > kMostDimensions) {
     dataset.fail("has " + std::to_string(rank) + " dimensions, expected 3 at most");
   }
-  return chunked(dataset, file, fields, version, filters);
+  return chunked(dataset, file, most, fields, version, filters);
 }
 
 /// First message of a type; null if there is none.
@@ -446,7 +408,8 @@ Hdf5Dataset::Hdf5Dataset(std::shared_ptr<const Hdf5Bytes> file, std::string name
   const auto number = hdf5_type(*file_, type->body);
   if (!number) fail("does not hold integers, float32 or float64");
   type_ = *number;
-  shape_ = hdf5_shape(*file_, space->body);
+  auto [sizes, most] = hdf5_shape(*file_, space->body);
+  shape_ = std::move(sizes);
   for (std::size_t d = 0; d < shape_.size(); ++d) {
     // The size in bytes, with 8 for each number, must fit into 64 bits.
     constexpr std::uint64_t kMost = std::numeric_limits<std::int64_t>::max() / 8;
@@ -458,7 +421,7 @@ Hdf5Dataset::Hdf5Dataset(std::shared_ptr<const Hdf5Bytes> file, std::string name
   if (size_ == 0 && std::ranges::any_of(shape_, [&](auto n) { return n > file_->size(); })) {
     fail("claims more rows than the file has bytes");
   }
-  storage_ = hdf5_storage(*this, file_, *layout, filters);
+  storage_ = hdf5_storage(*this, file_, most, *layout, filters);
 }
 
 void Hdf5Dataset::read(std::uint64_t first, std::span<double> values) const {
@@ -479,7 +442,7 @@ void Hdf5Dataset::fail(const std::string& message) const {
 }
 
 Hdf5File::Hdf5File(const fs::path& path) : bytes_(std::make_shared<const Hdf5Bytes>(path)) {
-  const auto messages = hdf5_messages(*bytes_, hdf5_root(*bytes_));
+  const auto messages = hdf5_group(*bytes_, hdf5_root(*bytes_));
   links_ = hdf5_links(*bytes_, messages);
   for (const Hdf5Message& message : messages) {
     if (message.type == Hdf5Message::attribute) add_attribute(message);
@@ -527,7 +490,7 @@ void Hdf5File::add_attribute(const Hdf5Message& message) {
   if (type_is_shared) return;
   const auto number = hdf5_type(*bytes_, type);
   if (!number) return;
-  for (const std::uint64_t size : hdf5_shape(*bytes_, space)) {
+  for (const std::uint64_t size : hdf5_shape(*bytes_, space).sizes) {
     if (size != 1) return;
   }
   double stored = 0;

@@ -13,8 +13,8 @@
 
 /// Reads HDF5 files without HDF5's library, which crashes on damaged files, follows references to
 /// other files, and loads plugins. This reader opens only the file itself and checks every address,
-/// size and count against it. It reads numbers at the top of a file, in the format that HDF5 and
-/// h5py write by default. Internal to the readers of formats that are HDF5.
+/// size and count against it. It reads numbers at the top of a file, in the formats that HDF5 and
+/// h5py write by default and as the latest. Internal to the readers of formats that are HDF5.
 ///
 /// [The HDF Group. HDF5 File Format Specification, version 3.0]
 namespace mimetra {
