@@ -23,10 +23,11 @@ namespace {
 /// any of them.
 bool is_known_extension(const std::string& extension) {
   static const std::vector<std::string> known = {
-      "KHR_mesh_quantization",      "EXT_meshopt_compression", "KHR_texture_transform",
-      "FB_ngon_encoding",           "KHR_texture_basisu",      "EXT_texture_webp",
-      "EXT_texture_avif",           "MSFT_texture_dds",        "KHR_lights_punctual",
-      "KHR_draco_mesh_compression", "KHR_animation_pointer",   "KHR_xmp_json_ld"};
+      "KHR_mesh_quantization", "EXT_meshopt_compression",    "KHR_meshopt_compression",
+      "KHR_texture_transform", "FB_ngon_encoding",           "KHR_texture_basisu",
+      "EXT_texture_webp",      "EXT_texture_avif",           "MSFT_texture_dds",
+      "KHR_lights_punctual",   "KHR_draco_mesh_compression", "KHR_animation_pointer",
+      "KHR_xmp_json_ld"};
   return extension.starts_with("KHR_materials_") ||
          std::find(known.begin(), known.end(), extension) != known.end();
 }
@@ -104,6 +105,13 @@ int component_type_of(const GltfValue& value) {
   return static_cast<int>(type);
 }
 
+/// Compression of a view or buffer. Both names stand for the same content.
+/// [EXT_meshopt_compression, KHR_meshopt_compression]
+std::optional<GltfValue> meshopt_extension(const GltfValue& value) {
+  const auto ratified = value.extension("KHR_meshopt_compression");
+  return ratified ? ratified : value.extension("EXT_meshopt_compression");
+}
+
 GltfCompression gltf_compression(const GltfValue& value, std::size_t buffers) {
   GltfCompression compression{value.index("buffer", buffers), value.count_or("byteOffset", 0),
                               value.count("byteLength"),      value.count("byteStride"),
@@ -123,6 +131,8 @@ GltfCompression gltf_compression(const GltfValue& value, std::size_t buffers) {
     compression.filter = GltfCompression::Filter::quaternion;
   } else if (filter == "EXPONENTIAL") {
     compression.filter = GltfCompression::Filter::exponential;
+  } else if (filter == "COLOR") {
+    compression.filter = GltfCompression::Filter::color;
   } else if (filter != "NONE") {
     value.fail("has filter '" + filter + "'");
   }
@@ -135,7 +145,7 @@ GltfView gltf_view(const GltfValue& value, std::size_t buffers) {
                 value.count("byteLength"),
                 value.count_or("byteStride", 0),
                 {}};
-  if (const auto extension = value.extension("EXT_meshopt_compression")) {
+  if (const auto extension = meshopt_extension(value)) {
     view.compression = gltf_compression(*extension, buffers);
   }
   return view;
@@ -391,7 +401,7 @@ void read_gltf_buffers(const GltfValue& root, const std::optional<std::string_vi
     std::string content;
     const bool is_chunk = !buffer.has("uri") && document.buffers.empty() && binary;
     // Fallback for programs that do not support the compression. Its bytes may be missing.
-    const auto compression = buffer.extension("EXT_meshopt_compression");
+    const auto compression = meshopt_extension(buffer);
     const bool stands_for_another =
         compression && (compression->flag("fallback") || !(buffer.has("uri") || is_chunk));
     if (!stands_for_another && buffer.has("uri")) {

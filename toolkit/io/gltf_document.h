@@ -16,10 +16,10 @@
 /// [Khronos. glTF 2.0 Specification. 2021]
 namespace mimetra {
 
-/// Compressed bytes of a view. [EXT_meshopt_compression]
+/// Compressed bytes of a view. [EXT_meshopt_compression, KHR_meshopt_compression]
 struct GltfCompression {
   enum class Mode { attributes, triangles, indices };
-  enum class Filter { none, octahedral, quaternion, exponential };
+  enum class Filter { none, octahedral, quaternion, exponential, color };
 
   std::size_t buffer, offset, bytes, stride, count;
   Mode mode;

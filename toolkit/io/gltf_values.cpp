@@ -53,6 +53,7 @@ int decode_meshopt(const GltfCompression& view, std::string_view bytes, std::str
 void apply_filter(const GltfCompression& view, std::string& bytes) {
   switch (view.filter) {
     case MeshoptFilter::none:
+    case MeshoptFilter::color:
       break;
     case MeshoptFilter::octahedral:
       meshopt_decodeFilterOct(bytes.data(), view.count, view.stride);
@@ -70,6 +71,15 @@ void apply_filter(const GltfCompression& view, std::string& bytes) {
 
 std::string decompressed(const std::string& path, const std::string& what,
                          const GltfCompression& compression, std::string_view bytes) {
+  if (compression.filter == MeshoptFilter::color) {
+    throw IoError(path, what + " has the filter COLOR, which is not read; use another filter");
+  }
+  constexpr std::string_view kSecondVertexCodec = "\xa1";
+  if (compression.mode == MeshoptMode::attributes && bytes.starts_with(kSecondVertexCodec)) {
+    throw IoError(path, what +
+                            " uses version 1 of the vertex codec, and only version 0 is read; "
+                            "export it with EXT_meshopt_compression");
+  }
   if (!has_sound_layout(compression)) {
     throw IoError(path, what + ": no compressed view has " + std::to_string(compression.count) +
                             " elements of " + std::to_string(compression.stride) +
