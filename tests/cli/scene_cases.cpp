@@ -104,7 +104,7 @@ void add_gltf_cases(std::vector<BadInput>& all) {
       3, {"needs the extension EXT_other"});
   add("outside_its_folder",
       scene(R"({"byteLength": 116})", R"({"byteLength": 116, "uri": "../../etc/passwd"})"), 3,
-      {"'../../etc/passwd' is no file in its own folder"});
+      {"'../../etc/passwd' is not in its own folder"});
   add("nested_deeply",
       scene(R"("asset": {)", R"("asset": {"extras": )" + std::string(100000, '[') + R"(, )"), 3,
       {"nested deeper than 100"});

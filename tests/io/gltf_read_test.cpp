@@ -318,7 +318,7 @@ TEST_F(GltfFiles, BuffersStandInTheFileOrBesideIt) {
   small.root["buffers"] = {
       {{"byteLength", 6}, {"uri", "data:application/octet-stream;base64,Zm9vYmFy"}}};
   write_bytes(folder_ / "c.gltf", small.root.dump());
-  EXPECT_EQ(read_gltf_document(folder_ / "c.gltf").buffers.front(), "foobar");
+  EXPECT_EQ(read_gltf_document(folder_ / "c.gltf").buffers.front().bytes, "foobar");
 }
 
 TEST_F(GltfFiles, DataMayBeWrittenAsAnyUriMay) {
@@ -328,7 +328,7 @@ TEST_F(GltfFiles, DataMayBeWrittenAsAnyUriMay) {
     GltfBuilder gltf;
     gltf.root["buffers"] = {{{"byteLength", 5}, {"uri", uri}}};
     write_bytes(folder_ / "c.gltf", gltf.root.dump());
-    EXPECT_EQ(read_gltf_document(folder_ / "c.gltf").buffers.front(), "fooba") << uri;
+    EXPECT_EQ(read_gltf_document(folder_ / "c.gltf").buffers.front().bytes, "fooba") << uri;
   }
 }
 
@@ -363,7 +363,7 @@ TEST_F(GltfFiles, NothingOutsideItsOwnFolderIsRead) {
                                 "file:///etc/passwd", "%2e%2e/secret.bin", "link.bin", ""}) {
     GltfBuilder gltf = plain();
     gltf.root["buffers"] = {{{"byteLength", 10}, {"uri", uri}}};
-    EXPECT_THAT(error(gltf.root.dump()), HasSubstr("is no file in its own folder")) << uri;
+    EXPECT_THAT(error(gltf.root.dump()), HasSubstr("is not in its own folder")) << uri;
   }
   GltfBuilder gltf = plain();
   gltf.root["buffers"] = {{{"byteLength", 10}, {"uri", "none.bin"}}};

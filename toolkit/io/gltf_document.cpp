@@ -8,467 +8,422 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
-#include "toolkit/io/bytes.h"
-#include "toolkit/io/gltf_json.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/text.h"
 
 namespace mimetra {
-namespace fs = std::filesystem;
 namespace {
 
-/// True for extensions that are read, or that do not affect where surfaces are. A file may require
-/// any of them.
-bool is_known_extension(const std::string& extension) {
-  static const std::vector<std::string> known = {
-      "KHR_mesh_quantization", "EXT_meshopt_compression",    "KHR_meshopt_compression",
-      "KHR_texture_transform", "FB_ngon_encoding",           "KHR_texture_basisu",
-      "EXT_texture_webp",      "EXT_texture_avif",           "MSFT_texture_dds",
-      "KHR_lights_punctual",   "KHR_draco_mesh_compression", "KHR_animation_pointer",
-      "KHR_xmp_json_ld"};
-  return extension.starts_with("KHR_materials_") ||
-         std::find(known.begin(), known.end(), extension) != known.end();
-}
+/// Extensions that are read, or that do not affect where surfaces are. A file may require them.
+constexpr std::string_view kKnownGltfExtensions[] = {
+    "KHR_mesh_quantization", "EXT_meshopt_compression",    "KHR_meshopt_compression",
+    "KHR_texture_transform", "FB_ngon_encoding",           "KHR_texture_basisu",
+    "EXT_texture_webp",      "EXT_texture_avif",           "MSFT_texture_dds",
+    "KHR_lights_punctual",   "KHR_draco_mesh_compression", "KHR_animation_pointer",
+    "KHR_xmp_json_ld"};
 
-/// The two chunks of a .glb. A .gltf is all JSON.
-struct GltfChunks {
-  std::string_view json;
-  std::optional<std::string_view> binary;
-};
-
-std::uint32_t gltf_word(std::string_view bytes, std::size_t at) {
-  return number_at<std::uint32_t>(bytes.data() + at, std::endian::little);
-}
-
-GltfChunks gltf_chunks(const std::string& path, std::string_view bytes) {
-  constexpr std::string_view kMagic = "glTF";
-  constexpr std::size_t kHeader = 12, kChunkHeader = 8;
-  constexpr std::uint32_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
-  if (!bytes.starts_with(kMagic)) return {bytes, std::nullopt};
-  if (bytes.size() < kHeader) throw IoError(path, "is truncated in its header");
-  if (gltf_word(bytes, 4) != 2) {
-    throw IoError(
-        path, "is glTF " + std::to_string(gltf_word(bytes, 4)) + ", and only version 2 is read");
-  }
-  const std::size_t length = gltf_word(bytes, 8);
-  if (length > bytes.size()) {
-    throw IoError(path, "is truncated: " + std::to_string(bytes.size()) + " bytes, expected " +
-                            std::to_string(length));
-  }
-  GltfChunks chunks;
-  for (std::size_t at = kHeader; at < length;) {
-    if (length - at < kChunkHeader) throw IoError(path, "ends within the header of a chunk");
-    const std::size_t size = gltf_word(bytes, at);
-    const std::uint32_t type = gltf_word(bytes, at + 4);
-    at += kChunkHeader;
-    if (size > length - at) throw IoError(path, "a chunk is longer than the file");
-    if (chunks.json.empty() && type != kJson) throw IoError(path, "does not start with JSON");
-    if (type == kJson && chunks.json.empty()) chunks.json = bytes.substr(at, size);
-    if (type == kBinary && !chunks.binary) chunks.binary = bytes.substr(at, size);
-    at += size;
-  }
-  if (chunks.json.empty()) throw IoError(path, "holds no JSON");
-  return chunks;
-}
-
-Json gltf_json(const std::string& path, std::string_view text) {
-  // Some exporters pad with zeros; the specification requires spaces.
-  while (text.ends_with('\0')) text.remove_suffix(1);
-  return parse_json(path, text, "glTF");
-}
-
-void check_asset(const GltfValue& root) {
-  const std::string version = root.at("asset").text_or("version", "");
-  if (!version.starts_with("2.")) root.fail("is glTF " + version + ", and only 2.0 is read");
-  for (const GltfValue& item : root.list("extensionsRequired")) {
-    if (is_known_extension(item.text())) continue;
-    root.fail("needs the extension " + item.text() + ", which is not read; export without it");
-  }
-}
-
-int gltf_components(const GltfValue& accessor) {
-  static const std::vector<std::pair<std::string, int>> kinds = {
-      {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
-  const std::string type = accessor.at("type").text();
-  for (const auto& [name, components] : kinds) {
-    if (name == type) return components;
-  }
-  accessor.fail("has type '" + type + "'");
-}
-
-int component_type_of(const GltfValue& value) {
-  const std::size_t type = value.count("componentType");
-  const bool known = type >= 5120 && type <= 5126 && type != 5124;
-  if (!known) value.fail("has component type " + std::to_string(type));
-  return static_cast<int>(type);
-}
-
-/// Compression of a view or buffer. Both names stand for the same content.
-/// [EXT_meshopt_compression, KHR_meshopt_compression]
-std::optional<GltfValue> meshopt_extension(const GltfValue& value) {
-  const auto ratified = value.extension("KHR_meshopt_compression");
-  return ratified ? ratified : value.extension("EXT_meshopt_compression");
-}
-
-GltfCompression gltf_compression(const GltfValue& value, std::size_t buffers) {
-  GltfCompression compression{value.index("buffer", buffers), value.count_or("byteOffset", 0),
-                              value.count("byteLength"),      value.count("byteStride"),
-                              value.count("count"),           GltfCompression::Mode::attributes,
-                              GltfCompression::Filter::none};
-  const std::string mode = value.at("mode").text(), filter = value.text_or("filter", "NONE");
-  if (mode == "TRIANGLES") {
-    compression.mode = GltfCompression::Mode::triangles;
-  } else if (mode == "INDICES") {
-    compression.mode = GltfCompression::Mode::indices;
-  } else if (mode != "ATTRIBUTES") {
-    value.fail("has mode '" + mode + "'");
-  }
-  if (filter == "OCTAHEDRAL") {
-    compression.filter = GltfCompression::Filter::octahedral;
-  } else if (filter == "QUATERNION") {
-    compression.filter = GltfCompression::Filter::quaternion;
-  } else if (filter == "EXPONENTIAL") {
-    compression.filter = GltfCompression::Filter::exponential;
-  } else if (filter == "COLOR") {
-    compression.filter = GltfCompression::Filter::color;
-  } else if (filter != "NONE") {
-    value.fail("has filter '" + filter + "'");
-  }
-  return compression;
-}
-
-GltfView gltf_view(const GltfValue& value, std::size_t buffers) {
-  GltfView view{value.index("buffer", buffers),
-                value.count_or("byteOffset", 0),
-                value.count("byteLength"),
-                value.count_or("byteStride", 0),
-                {}};
-  if (const auto extension = meshopt_extension(value)) {
-    view.compression = gltf_compression(*extension, buffers);
-  }
-  return view;
-}
-
-GltfPlace gltf_place(const GltfValue& value, std::size_t views) {
-  return {value.index("bufferView", views), value.count_or("byteOffset", 0)};
-}
-
-GltfAccessor gltf_accessor(const GltfValue& value, std::size_t views) {
-  GltfAccessor accessor{{},
-                        value.count("count"),
-                        component_type_of(value),
-                        gltf_components(value),
-                        value.flag("normalized"),
-                        {}};
-  if (accessor.count == 0) value.fail("has no elements");
-  if (value.has("bufferView")) accessor.place = gltf_place(value, views);
-  if (value.has("sparse")) {
-    const GltfValue sparse = value.at("sparse");
-    accessor.sparse =
-        GltfSparse{sparse.count("count"), gltf_place(sparse.at("indices"), views),
-                   gltf_place(sparse.at("values"), views), component_type_of(sparse.at("indices"))};
-    if (accessor.sparse->count > accessor.count) sparse.fail("replaces more than there is");
-  }
-  return accessor;
-}
-
-std::string joints_name(std::size_t set) {
-  return "JOINTS_" + std::to_string(set);
-}
-
-std::string weights_name(std::size_t set) {
-  return "WEIGHTS_" + std::to_string(set);
-}
-
-/// Accessors of joints and their weights, set by set.
-std::vector<std::pair<std::size_t, std::size_t>> joint_sets(const GltfValue& attributes,
-                                                            std::size_t size) {
-  std::vector<std::pair<std::size_t, std::size_t>> sets;
-  for (std::size_t set = 0;; ++set) {
-    const auto joints = attributes.maybe_index(joints_name(set).c_str(), size);
-    const auto weights = attributes.maybe_index(weights_name(set).c_str(), size);
-    if (!joints || !weights) return sets;
-    sets.emplace_back(*joints, *weights);
-  }
-}
-
-GltfPrimitive gltf_primitive(const GltfValue& value, const GltfDocument& document,
-                             std::size_t materials) {
-  const std::size_t accessors = document.accessors.size();
-  GltfPrimitive primitive{};
-  const std::size_t mode = value.count_or("mode", 4);
-  if (mode > 6) value.fail("has mode " + std::to_string(mode));
-  primitive.mode = static_cast<int>(mode);
-  const GltfValue attributes = value.at("attributes");
-  primitive.positions = attributes.maybe_index("POSITION", accessors);
-  primitive.texture = attributes.maybe_index("TEXCOORD_0", accessors);
-  for (const char* name : {"TEXCOORD_1", "COLOR_0"}) {
-    if (attributes.has(name)) primitive.unread.emplace_back(name);
-  }
-  primitive.joints = joint_sets(attributes, accessors);
-  primitive.indices = value.maybe_index("indices", accessors);
-  primitive.material = value.maybe_index("material", materials);
-  for (const GltfValue& target : value.list("targets")) {
-    primitive.targets.push_back(target.maybe_index("POSITION", accessors));
-  }
-  primitive.polygons = value.extension("FB_ngon_encoding").has_value();
-  if (const auto draco = value.extension("KHR_draco_mesh_compression")) {
-    const GltfValue ids = draco->at("attributes");
-    for (const char* name : {"TEXCOORD_0", "JOINTS_0", "WEIGHTS_0"}) {
-      if (!ids.has(name) || attributes.has(name)) continue;
-      ids.fail(std::string("names ") + name + ", which the primitive itself does not");
+/// Reads the JSON of a file. Values have a place below another: "sparse/indices". Messages begin
+/// with the item that is being read and the last place in it.
+class GltfParser {
+ public:
+  GltfDocument read(const std::filesystem::path& path) {
+    const std::string bytes = read_file(path);
+    document_.path = path.string();
+    document_.files.push_back(path);
+    document_.file_bytes = bytes.size();
+    const GltfChunks chunks = gltf_chunks(document_.path, bytes);
+    // Some exporters pad with zeros; the specification requires spaces.
+    const auto json = chunks.json.substr(0, chunks.json.find_last_not_of('\0') + 1);
+    const Json root = parse_json(document_.path, json, "glTF");
+    try {
+      read_root(root, chunks.binary);
+    } catch (const Json::exception& error) {
+      const std::string what = error.what();
+      fail(what.substr(what.find(']') + 2));  // after nlohmann's code
     }
-    constexpr std::size_t kMostIds = std::numeric_limits<int>::max();
-    primitive.draco = GltfDraco{draco->index("bufferView", document.views.size()),
-                                ids.maybe_index("POSITION", kMostIds),
-                                ids.maybe_index("TEXCOORD_0", kMostIds),
-                                {}};
-    for (std::size_t set = 0; set < primitive.joints.size(); ++set) {
-      primitive.draco->joints.emplace_back(ids.maybe_index(joints_name(set).c_str(), kMostIds),
-                                           ids.maybe_index(weights_name(set).c_str(), kMostIds));
+    return std::move(document_);
+  }
+
+ private:
+  /// Refuses the value that was looked at last.
+  [[noreturn]] void fail(const std::string& problem) const {
+    const std::string dot = item_.empty() || place_.empty() ? "" : ".";
+    throw IoError(document_.path, item_ + dot + place_ + ": " + problem);
+  }
+  /// Stands for a value that is missing; null in a file is a value.
+  static const Json& none() {
+    static const Json value;
+    return value;
+  }
+  /// The value at a place, or `otherwise` if there is none.
+  const Json& at(const Json& value, const std::string& place, const Json& otherwise = none()) {
+    place_ = place;
+    const Json::json_pointer pointer(place.empty() ? place : '/' + place);
+    return value.contains(pointer) ? value.at(pointer) : otherwise;
+  }
+  bool has(const Json& value, const std::string& place) { return &at(value, place) != &none(); }
+  const Json& required(const Json& value, const std::string& place,
+                       const Json& otherwise = none()) {
+    const Json& found = at(value, place, otherwise);
+    if (&found == &none()) fail("is missing");
+    return found;
+  }
+  double number(const Json& value, const std::string& place, const Json& otherwise = none()) {
+    return required(value, place, otherwise).get<double>();
+  }
+  std::size_t count(const Json& value, const std::string& place, const Json& otherwise = none()) {
+    constexpr double kMost = 9007199254740992.;  // whole numbers are exact up to here
+    const double found = number(value, place, otherwise);
+    if (found < 0 || found > kMost || found != std::floor(found)) fail("expected a count");
+    return static_cast<std::size_t>(found);
+  }
+  std::size_t index(const Json& value, const std::string& place, std::size_t size) {
+    const std::size_t found = count(value, place);
+    if (found < size) return found;
+    fail("is " + std::to_string(found) + ", but there are " + std::to_string(size));
+  }
+  std::optional<std::size_t> maybe_index(const Json& value, const std::string& place,
+                                         std::size_t size) {
+    if (!has(value, place)) return {};
+    return index(value, place, size);
+  }
+  std::string text(const Json& value, const std::string& place, const Json& otherwise = none()) {
+    return required(value, place, otherwise).get<std::string>();
+  }
+  /// Text of at most 1000 bytes, because names may be copied many times.
+  std::string name(const Json& value, const std::string& place = "name") {
+    constexpr std::size_t kLongest = 1000;
+    std::string found = text(value, place, "");
+    if (found.size() > kLongest) fail("has " + std::to_string(found.size()) + " bytes");
+    return found;
+  }
+  /// Number of a word among known ones.
+  std::size_t choice(const std::string& word, std::initializer_list<std::string_view> known) const {
+    const auto found = std::ranges::find(known, word);
+    if (found == known.end()) fail("is '" + word + "', which is not read");
+    return static_cast<std::size_t>(found - known.begin());
+  }
+  bool flag(const Json& value, const std::string& place) {
+    return at(value, place, false).get<bool>();
+  }
+  /// As many numbers as `otherwise` has, or any number of them if it is empty.
+  std::vector<double> numbers(const Json& value, const std::string& place,
+                              const std::vector<double>& otherwise) {
+    auto found = at(value, place, otherwise).get<std::vector<double>>();
+    if (otherwise.empty() || found.size() == otherwise.size()) return found;
+    fail("has " + std::to_string(found.size()) + " numbers, expected " +
+         std::to_string(otherwise.size()));
+  }
+  /// Reads each item of an array; none if it is missing.
+  template <typename Read>
+  auto items(const Json& value, const std::string& place, const Read& read) {
+    const Json& list = at(value, place);
+    if (&list != &none() && !list.is_array()) fail("expected an array");
+    const std::string outer = item_, start = (outer.empty() ? "" : outer + '.') + place + '[';
+    std::vector<decltype(read(list))> items;
+    for (const Json& item : list) {
+      item_ = start + std::to_string(items.size()) + ']';
+      place_.clear();
+      items.push_back(read(item));
+    }
+    item_ = outer;
+    return items;
+  }
+  std::vector<std::size_t> indices(const Json& value, const std::string& place, std::size_t size) {
+    if (!at(value, "").is_object()) fail("expected an object");
+    return items(value, place, [&](const Json& item) { return index(item, "", size); });
+  }
+
+  /// Place of the compression of a view or buffer. Both names stand for the same content.
+  /// [EXT_meshopt_compression, KHR_meshopt_compression]
+  std::string meshopt(const Json& value) {
+    const std::string ratified = "extensions/KHR_meshopt_compression";
+    return has(value, ratified) ? ratified : "extensions/EXT_meshopt_compression";
+  }
+
+  GltfBuffer buffer(const Json& value, const std::optional<std::string_view>& binary) {
+    GltfBuffer buffer;
+    if (flag(value, meshopt(value) + "/fallback")) {
+      buffer.missing = "a view needs a buffer that only stands for compressed data";
+    } else if (has(value, "uri")) {
+      buffer = read_gltf_buffer(document_.path, text(value, "uri"));
+    } else if (binary) {
+      buffer.bytes = *binary;
+    } else {
+      buffer.missing = "a view needs a buffer that has no 'uri'";
+    }
+    const std::size_t bytes = count(value, "byteLength"), held = buffer.bytes.size();
+    if (held < bytes && buffer.missing.empty()) {
+      fail("is truncated: " + std::to_string(held) + " bytes, expected " + std::to_string(bytes));
+    }
+    buffer.bytes.resize(std::min(held, bytes));
+    document_.file_bytes += buffer.bytes.size();
+    if (!buffer.file.empty()) document_.files.push_back(buffer.file);
+    return buffer;
+  }
+
+  GltfView view(const Json& value) {
+    const std::size_t buffers = document_.buffers.size();
+    GltfView view{.buffer = index(value, "buffer", buffers),
+                  .offset = count(value, "byteOffset", 0),
+                  .bytes = count(value, "byteLength"),
+                  .stride = count(value, "byteStride", 0),
+                  .compression = {}};
+    const Json& packed = at(value, meshopt(value));
+    if (&packed == &none()) return view;
+    const std::size_t mode = choice(text(packed, "mode"), {"ATTRIBUTES", "TRIANGLES", "INDICES"});
+    const std::size_t filter = choice(text(packed, "filter", "NONE"),
+                                      {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL", "COLOR"});
+    view.compression = GltfCompression{.buffer = index(packed, "buffer", buffers),
+                                       .offset = count(packed, "byteOffset", 0),
+                                       .bytes = count(packed, "byteLength"),
+                                       .stride = count(packed, "byteStride"),
+                                       .count = count(packed, "count"),
+                                       .mode = GltfCompression::Mode(mode),
+                                       .filter = GltfCompression::Filter(filter)};
+    return view;
+  }
+
+  GltfPlace place(const Json& value) {
+    return {index(value, "bufferView", document_.views.size()), count(value, "byteOffset", 0)};
+  }
+  int component_type(const Json& value) {
+    const std::size_t type = count(value, "componentType");
+    if (type >= 5120 && type <= 5126 && type != 5124) return static_cast<int>(type);
+    fail("is " + std::to_string(type) + ", which is not a component type");
+  }
+  GltfAccessor accessor(const Json& value) {
+    constexpr int kComponents[] = {1, 2, 3, 4, 4, 9, 16};
+    const std::size_t shape =
+        choice(text(value, "type"), {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"});
+    GltfAccessor accessor{.place = {},
+                          .count = count(value, "count"),
+                          .type = component_type(value),
+                          .components = kComponents[shape],
+                          .normalized = flag(value, "normalized"),
+                          .sparse = {}};
+    if (has(value, "bufferView")) accessor.place = place(value);
+    if (has(value, "sparse")) {
+      const Json &indices = at(value, "sparse/indices"), &values = at(value, "sparse/values");
+      accessor.sparse = GltfSparse{count(value, "sparse/count"), place(indices), place(values),
+                                   component_type(indices)};
+    }
+    const std::size_t least = accessor.sparse ? accessor.sparse->count : 0;
+    if (count(value, "count") >= std::max<std::size_t>(least, 1)) return accessor;
+    fail("is " + std::to_string(accessor.count) + ", which is too few elements");
+  }
+
+  GltfPrimitive primitive(const Json& value) {
+    constexpr std::size_t kModes = 7, kTriangles = 4, kMostIds = std::numeric_limits<int>::max();
+    const std::size_t accessors = document_.accessors.size();
+    const Json& attributes = required(value, "attributes");
+    GltfPrimitive primitive{};
+    primitive.mode = static_cast<int>(maybe_index(value, "mode", kModes).value_or(kTriangles));
+    primitive.positions = maybe_index(attributes, "POSITION", accessors);
+    primitive.texture = maybe_index(attributes, "TEXCOORD_0", accessors);
+    for (const char* unread : {"TEXCOORD_1", "COLOR_0"}) {
+      if (has(attributes, unread)) primitive.unread.emplace_back(unread);
+    }
+    primitive.indices = maybe_index(value, "indices", accessors);
+    primitive.material = maybe_index(value, "material", document_.materials.size());
+    primitive.targets = items(value, "targets", [&](const Json& target) {
+      return maybe_index(target, "POSITION", accessors);
+    });
+    primitive.polygons = has(value, "extensions/FB_ngon_encoding");
+    const Json& draco = at(value, "extensions/KHR_draco_mesh_compression");
+    const bool is_packed = &draco != &none();
+    const Json& ids = is_packed ? required(draco, "attributes") : draco;
+    for (const char* own : {"TEXCOORD_0", "JOINTS_0", "WEIGHTS_0"}) {
+      if (!has(ids, own) || has(attributes, own)) continue;
+      fail("is compressed, but the primitive does not have it");
+    }
+    if (is_packed) {
+      primitive.draco = GltfDraco{index(draco, "bufferView", document_.views.size()),
+                                  maybe_index(ids, "POSITION", kMostIds),
+                                  maybe_index(ids, "TEXCOORD_0", kMostIds),
+                                  {}};
+    }
+    for (std::size_t set = 0;; ++set) {
+      const std::string number = std::to_string(set);
+      const auto joints = maybe_index(attributes, "JOINTS_" + number, accessors);
+      const auto weights = maybe_index(attributes, "WEIGHTS_" + number, accessors);
+      if (!joints || !weights) return primitive;
+      primitive.joints.emplace_back(*joints, *weights);
+      if (!primitive.draco) continue;
+      primitive.draco->joints.emplace_back(maybe_index(ids, "JOINTS_" + number, kMostIds),
+                                           maybe_index(ids, "WEIGHTS_" + number, kMostIds));
     }
   }
-  return primitive;
-}
 
-/// Reads the names of targets. Other content of `extras` belongs to other programs.
-std::vector<std::string> target_names(const GltfValue& value) {
-  std::vector<std::string> names;
-  if (!value.has("extras") || !value.at("extras").has("targetNames")) return names;
-  const GltfValue given = value.at("extras").at("targetNames");
-  if (!given.is_array()) return names;
-  for (const GltfValue& name : given.items()) {
-    names.push_back(name.is_text() ? name.name() : std::string());
+  /// Names of targets; empty for other content, which belongs to other programs.
+  std::vector<std::string> target_names(const Json& value) {
+    if (!at(value, "extras/targetNames").is_array()) return {};
+    return items(value, "extras/targetNames", [&](const Json& item) {
+      return item.is_string() ? name(item, "") : std::string();
+    });
   }
-  return names;
-}
-
-GltfMesh gltf_mesh(const GltfValue& value, const GltfDocument& document, std::size_t materials) {
-  GltfMesh mesh{value.name_or_nothing(), {}, target_names(value), value.numbers("weights")};
-  for (const GltfValue& item : value.at("primitives").items()) {
-    mesh.primitives.push_back(gltf_primitive(item, document, materials));
-    if (mesh.target_names.empty()) mesh.target_names = target_names(item);
+  GltfMesh mesh(const Json& value) {
+    GltfMesh mesh{name(value), {}, target_names(value), numbers(value, "weights", {}), 0};
+    required(value, "primitives");
+    mesh.primitives = items(value, "primitives", [&](const Json& item) {
+      if (mesh.target_names.empty()) mesh.target_names = target_names(item);
+      GltfPrimitive read = primitive(item);
+      mesh.most_targets = std::max(mesh.most_targets, read.targets.size());
+      return read;
+    });
+    return mesh;
   }
-  return mesh;
-}
 
-Eigen::Matrix4d gltf_transform(const GltfValue& value) {
-  if (value.has("matrix")) {
-    const auto columns = value.numbers_or<16>("matrix", {});
-    return Eigen::Map<const Eigen::Matrix4d>(columns.data());
+  Eigen::Matrix4d transform(const Json& value) {
+    if (has(value, "matrix")) {
+      return Eigen::Matrix4d(numbers(value, "matrix", std::vector<double>(16)).data());
+    }
+    Eigen::Affine3d transform = Eigen::Affine3d::Identity();
+    transform.translate(Eigen::Vector3d(numbers(value, "translation", {0, 0, 0}).data()));
+    Eigen::Quaterniond rotation(numbers(value, "rotation", {0, 0, 0, 1}).data());
+    if (rotation.norm() == 0) fail("is no rotation of length 1");
+    transform.rotate(rotation.normalized());
+    transform.scale(Eigen::Vector3d(numbers(value, "scale", {1, 1, 1}).data()));
+    return transform.matrix();
   }
-  const auto move = value.numbers_or<3>("translation", {0, 0, 0});
-  const auto turn = value.numbers_or<4>("rotation", {0, 0, 0, 1});
-  const auto scale = value.numbers_or<3>("scale", {1, 1, 1});
-  Eigen::Quaterniond rotation(turn[3], turn[0], turn[1], turn[2]);
-  if (rotation.norm() == 0) value.fail("has no rotation of length 1");
-  rotation.normalize();
-  Eigen::Affine3d transform = Eigen::Affine3d::Identity();
-  transform.translate(Eigen::Vector3d(move[0], move[1], move[2]));
-  transform.rotate(rotation);
-  transform.scale(Eigen::Vector3d(scale[0], scale[1], scale[2]));
-  return transform.matrix();
-}
-
-GltfNode gltf_node(const GltfValue& value, const GltfDocument& document, std::size_t nodes,
-                   std::size_t skins) {
-  GltfNode node{value.name_or_nothing(),
-                {},
-                value.maybe_index("mesh", document.meshes.size()),
-                value.maybe_index("skin", skins),
-                gltf_transform(value),
-                value.numbers("weights")};
-  for (const GltfValue& child : value.list("children")) node.children.push_back(child.index(nodes));
-  return node;
-}
-
-GltfSkin gltf_skin(const GltfValue& value, const GltfDocument& document) {
-  GltfSkin skin{{}, value.maybe_index("inverseBindMatrices", document.accessors.size())};
-  for (const GltfValue& joint : value.at("joints").items()) {
-    skin.joints.push_back(joint.index(document.nodes.size()));
+  GltfNode node(const Json& value) {
+    return {name(value),
+            indices(value, "children", nodes_),
+            maybe_index(value, "mesh", document_.meshes.size()),
+            maybe_index(value, "skin", skins_),
+            transform(value),
+            numbers(value, "weights", {})};
   }
-  return skin;
-}
-
-/// Pictures of a material, its base colour first.
-std::vector<GltfValue> gltf_pictures(const GltfValue& material) {
-  std::vector<GltfValue> pictures;
-  const auto add = [&pictures](const GltfValue& surface, const char* name) {
-    if (surface.has(name)) pictures.push_back(surface.at(name));
-  };
-  const bool is_metallic = material.has("pbrMetallicRoughness");
-  if (is_metallic) add(material.at("pbrMetallicRoughness"), "baseColorTexture");
-  if (const auto glossy = material.extension("KHR_materials_pbrSpecularGlossiness")) {
-    add(*glossy, "diffuseTexture");
-    add(*glossy, "specularGlossinessTexture");
+  GltfSkin skin(const Json& value) {
+    required(value, "joints");
+    return {indices(value, "joints", nodes_),
+            maybe_index(value, "inverseBindMatrices", document_.accessors.size())};
   }
-  if (is_metallic) add(material.at("pbrMetallicRoughness"), "metallicRoughnessTexture");
-  for (const char* name : {"normalTexture", "occlusionTexture", "emissiveTexture"}) {
-    add(material, name);
+
+  GltfMaterial material(const Json& value) {
+    GltfMaterial material{name(value), Eigen::Matrix<double, 2, 3>::Identity()};
+    const std::string glossy = "extensions/KHR_materials_pbrSpecularGlossiness/";
+    for (const std::string& place : std::initializer_list<std::string>{
+             "pbrMetallicRoughness/baseColorTexture", glossy + "diffuseTexture",
+             glossy + "specularGlossinessTexture", "pbrMetallicRoughness/metallicRoughnessTexture",
+             "normalTexture", "occlusionTexture", "emissiveTexture"}) {
+      if (!has(value, place)) continue;
+      const Json& picture = at(value, place);
+      const Json& transform = at(picture, "extensions/KHR_texture_transform");
+      if (count(transform, "texCoord", count(picture, "texCoord", 0)) != 0) continue;
+      const Eigen::Vector2d scale(numbers(transform, "scale", {1, 1}).data());
+      const Eigen::Vector2d offset(numbers(transform, "offset", {0, 0}).data());
+      material.texture << Eigen::Rotation2Dd(-number(transform, "rotation", 0)).matrix() *
+                              scale.asDiagonal(),
+          offset;
+      break;
+    }
+    return material;
   }
-  return pictures;
-}
 
-GltfMaterial gltf_material(const GltfValue& value) {
-  GltfMaterial material{value.name_or_nothing(), Eigen::Matrix<double, 2, 3>::Identity()};
-  for (const GltfValue& picture : gltf_pictures(value)) {
-    const auto transform = picture.extension("KHR_texture_transform");
-    const std::size_t set = picture.count_or("texCoord", 0);
-    if ((transform ? transform->count_or("texCoord", set) : set) != 0) continue;
-    if (!transform) break;
-    const auto offset = transform->numbers_or<2>("offset", {0, 0});
-    const auto scale = transform->numbers_or<2>("scale", {1, 1});
-    const double angle = transform->has("rotation") ? transform->at("rotation").number() : 0;
-    const double c = std::cos(angle), s = std::sin(angle);
-    material.texture << c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1],
-        offset[1];
-    break;
+  GltfAnimation animation(const Json& value) {
+    const std::size_t accessors = document_.accessors.size();
+    required(value, "channels");
+    const Json& samplers = required(value, "samplers");
+    if (!samplers.is_array()) fail("expected an array");
+    GltfAnimation animation{name(value), {}, {}};
+    items(value, "channels", [&](const Json& channel) {
+      required(channel, "target");
+      const std::string extension = "target/extensions/KHR_animation_pointer";
+      std::optional<std::pair<std::size_t, std::string>> target;  // node and property
+      if (has(channel, "target/node")) {
+        target = {index(channel, "target/node", nodes_), text(channel, "target/path")};
+      } else if (has(channel, extension)) {
+        required(channel, extension + "/pointer");
+        const std::string pointer = name(channel, extension + "/pointer");
+        target = pointed(pointer);
+        const bool is_unread = !target && pointer.find("/weights") != std::string::npos;
+        if (is_unread) animation.unread.push_back("'" + pointer + "'");
+      }
+      if (!target) return false;  // lights, materials and other targets
+      const std::string sampler =
+          "samplers/" + std::to_string(index(channel, "sampler", samplers.size())) + '/';
+      animation.channels.push_back({target->first, target->second == "weights",
+                                    index(value, sampler + "input", accessors),
+                                    index(value, sampler + "output", accessors),
+                                    text(value, sampler + "interpolation", "LINEAR")});
+      return true;
+    });
+    return animation;
   }
-  return material;
-}
-
-/// A node and the property that an animation changes.
-struct GltfTarget {
-  std::size_t node;
-  std::string property;
-};
-
-/// Target of an animation channel; none for lights, materials and other targets that are not nodes.
-std::optional<GltfTarget> gltf_target(const GltfValue& target, std::size_t nodes,
-                                      std::vector<std::string>& unread) {
-  if (target.has("node")) return GltfTarget{target.index("node", nodes), target.at("path").text()};
-  const auto extension = target.extension("KHR_animation_pointer");
-  if (!extension) return std::nullopt;
-  const std::string pointer = extension->at("pointer").name();
-  constexpr std::string_view kNodes = "/nodes/";
-  if (pointer.starts_with(kNodes)) {
+  /// Reads a pointer such as "/nodes/3/weights"; none for pointers to other values.
+  std::optional<std::pair<std::size_t, std::string>> pointed(const std::string& pointer) const {
+    const std::string start = "/nodes/";
+    if (!pointer.starts_with(start)) return {};
     std::size_t node = 0;
-    const char* last = pointer.data() + pointer.size();
-    const auto [end, error] = std::from_chars(pointer.data() + kNodes.size(), last, node);
-    const std::string_view rest(end, static_cast<std::size_t>(last - end));
-    const bool is_whole = error == std::errc() && rest.rfind('/') == 0;
-    if (is_whole && node < nodes) return GltfTarget{node, std::string(rest.substr(1))};
+    std::from_chars(pointer.data() + start.size(), pointer.data() + pointer.size(), node);
+    const std::string parent = start + std::to_string(node) + '/';
+    const bool is_own = pointer.starts_with(parent) && pointer.rfind('/') == parent.size() - 1;
+    if (!is_own || node >= nodes_) return {};
+    return std::pair(node, pointer.substr(parent.size()));
   }
-  if (pointer.find("/weights") != std::string::npos) unread.push_back("'" + pointer + "'");
-  return std::nullopt;
-}
 
-GltfAnimation gltf_animation(const GltfValue& value, const GltfDocument& document) {
-  GltfAnimation animation{value.name_or_nothing(), {}, {}};
-  const std::vector<GltfValue> samplers = value.at("samplers").items();
-  for (const GltfValue& channel : value.at("channels").items()) {
-    const auto target = gltf_target(channel.at("target"), document.nodes.size(), animation.unread);
-    if (!target) continue;
-    const GltfValue& sampler = samplers[channel.index("sampler", samplers.size())];
-    const std::size_t accessors = document.accessors.size();
-    animation.channels.push_back(
-        {target->node, target->property == "weights", sampler.index("input", accessors),
-         sampler.index("output", accessors), sampler.text_or("interpolation", "LINEAR")});
+  void read_root(const Json& root, std::optional<std::string_view> binary) {
+    const std::string version = text(root, "asset/version");
+    if (!version.starts_with("2.")) fail("is glTF " + version + ", and only 2.0 is read");
+    items(root, "extensionsRequired", [&](const Json& needed) {
+      const std::string extension = text(needed, "");
+      const bool is_known = std::ranges::count(kKnownGltfExtensions, extension) > 0;
+      if (is_known || extension.starts_with("KHR_materials_")) return true;
+      fail("needs the extension " + extension + ", which is not read; export without it");
+    });
+    document_.generator = text(root, "asset/generator", "");
+    document_.rest_is_known = !flag(root, "asset/extras/restIsFirstFrame");
+    // Only the first buffer may be the binary chunk.
+    document_.buffers = items(root, "buffers", [&](const Json& value) {
+      return buffer(value, std::exchange(binary, std::nullopt));
+    });
+    skins_ = at(root, "skins").size();
+    nodes_ = at(root, "nodes").size();
+    const auto read = [&](auto& list, const char* place, auto item) {
+      list = items(root, place, [&](const Json& value) { return (this->*item)(value); });
+    };
+    read(document_.views, "bufferViews", &GltfParser::view);
+    read(document_.accessors, "accessors", &GltfParser::accessor);
+    read(document_.materials, "materials", &GltfParser::material);
+    read(document_.meshes, "meshes", &GltfParser::mesh);
+    read(document_.nodes, "nodes", &GltfParser::node);
+    read(document_.skins, "skins", &GltfParser::skin);
+    read(document_.animations, "animations", &GltfParser::animation);
+    document_.roots = roots(root);
   }
-  return animation;
-}
 
-std::vector<std::size_t> gltf_roots(const GltfValue& root, GltfDocument& document) {
-  const std::vector<GltfValue> scenes = root.list("scenes");
-  std::vector<std::size_t> roots;
-  if (scenes.empty()) {
-    std::vector<bool> is_child(document.nodes.size(), false);
-    for (const GltfNode& node : document.nodes) {
-      for (const std::size_t child : node.children) is_child[child] = true;
+  std::vector<std::size_t> roots(const Json& root) {
+    const Json& scenes = at(root, "scenes");
+    if (&scenes != &none() && !scenes.is_array()) fail("expected an array");
+    if (!scenes.empty()) {
+      const std::size_t shown = maybe_index(root, "scene", scenes.size()).value_or(0);
+      if (scenes.size() > 1) {
+        document_.notes.push_back(document_.path + ": scene " + std::to_string(shown) + " of " +
+                                  std::to_string(scenes.size()) + " is read");
+      }
+      return indices(scenes[shown], "nodes", nodes_);
     }
-    for (std::size_t n = 0; n < is_child.size(); ++n) {
-      if (!is_child[n]) roots.push_back(n);
+    std::vector<std::size_t> parents(nodes_, 0), roots;
+    for (const GltfNode& node : document_.nodes) {
+      for (const std::size_t child : node.children) parents[child] += 1;
+    }
+    for (std::size_t n = 0; n < nodes_; ++n) {
+      if (parents[n] == 0) roots.push_back(n);
     }
     return roots;
   }
-  const std::size_t shown = root.has("scene") ? root.index("scene", scenes.size()) : 0;
-  if (scenes.size() > 1) {
-    document.notes.push_back(document.path + ": scene " + std::to_string(shown) + " of " +
-                             std::to_string(scenes.size()) + " is read");
-  }
-  for (const GltfValue& node : scenes[shown].list("nodes")) {
-    roots.push_back(node.index(document.nodes.size()));
-  }
-  return roots;
-}
 
-void read_gltf_buffers(const GltfValue& root, const std::optional<std::string_view>& binary,
-                       GltfDocument& document) {
-  for (const GltfValue& buffer : root.list("buffers")) {
-    const std::size_t bytes = buffer.count("byteLength");
-    std::string content;
-    const bool is_chunk = !buffer.has("uri") && document.buffers.empty() && binary;
-    // Fallback for programs that do not support the compression. Its bytes may be missing.
-    const auto compression = meshopt_extension(buffer);
-    const bool stands_for_another =
-        compression && (compression->flag("fallback") || !(buffer.has("uri") || is_chunk));
-    if (!stands_for_another && buffer.has("uri")) {
-      GltfBuffer read = read_gltf_buffer(document.path, buffer.at("uri").text());
-      if (read.file) document.files.push_back(*read.file);
-      if (!read.missing.empty()) document.missing_buffers[document.buffers.size()] = read.missing;
-      content = std::move(read.bytes);
-    } else if (is_chunk && !stands_for_another) {
-      content = std::string(*binary);
-    } else if (!stands_for_another) {
-      buffer.fail("has no 'uri'");
-    }
-    const bool is_needed =
-        !stands_for_another && !document.missing_buffers.contains(document.buffers.size());
-    if (content.size() < bytes && is_needed) {
-      buffer.fail("is truncated: " + std::to_string(content.size()) + " bytes, expected " +
-                  std::to_string(bytes));
-    }
-    if (content.size() > bytes) content.resize(bytes);
-    document.file_bytes += content.size();
-    document.buffers.push_back(std::move(content));
-  }
-}
+  GltfDocument document_{};
+  std::size_t nodes_ = 0, skins_ = 0;
+  std::string item_, place_;
+};
 
 }  // namespace
 
-std::size_t GltfMesh::most_targets() const {
-  std::size_t most = 0;
-  for (const GltfPrimitive& primitive : primitives) {
-    most = std::max(most, primitive.targets.size());
-  }
-  return most;
-}
-
-GltfDocument read_gltf_document(const fs::path& path) {
-  GltfDocument document;
-  document.path = path.string();
-  document.files.push_back(path);
-  const std::string bytes = read_file(path);
-  document.file_bytes = bytes.size();
-  const GltfChunks chunks = gltf_chunks(document.path, bytes);
-  const Json json = gltf_json(document.path, chunks.json);
-  const GltfValue root(document.path, "", json);
-  check_asset(root);
-  read_gltf_buffers(root, chunks.binary, document);
-  const auto fill = [&root](auto& list, const char* name, const auto& made) {
-    for (const GltfValue& value : root.list(name)) list.push_back(made(value));
-  };
-  const std::size_t skins = root.list("skins").size(), materials = root.list("materials").size();
-  const std::size_t nodes = root.list("nodes").size();
-  fill(document.views, "bufferViews",
-       [&](const GltfValue& value) { return gltf_view(value, document.buffers.size()); });
-  fill(document.accessors, "accessors",
-       [&](const GltfValue& value) { return gltf_accessor(value, document.views.size()); });
-  fill(document.materials, "materials", gltf_material);
-  fill(document.meshes, "meshes",
-       [&](const GltfValue& value) { return gltf_mesh(value, document, materials); });
-  fill(document.nodes, "nodes",
-       [&](const GltfValue& value) { return gltf_node(value, document, nodes, skins); });
-  fill(document.skins, "skins", [&](const GltfValue& value) { return gltf_skin(value, document); });
-  fill(document.animations, "animations",
-       [&](const GltfValue& value) { return gltf_animation(value, document); });
-  document.roots = gltf_roots(root, document);
-  const GltfValue asset = root.at("asset");
-  document.generator = asset.text_or("generator", "");
-  document.rest_is_known = !(asset.has("extras") && asset.at("extras").flag("restIsFirstFrame"));
-  return document;
+GltfDocument read_gltf_document(const std::filesystem::path& path) {
+  return GltfParser().read(path);
 }
 
 }  // namespace mimetra

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -10,6 +9,8 @@
 #include <vector>
 
 #include <Eigen/Core>
+
+#include "toolkit/io/gltf_bytes.h"
 
 /// Content of a glTF file, as stored. Internal to the format.
 ///
@@ -68,15 +69,11 @@ struct GltfPrimitive {
   std::vector<std::pair<std::size_t, std::size_t>> joints;
   std::vector<std::optional<std::size_t>> targets;
   std::optional<GltfDraco> draco;
-  /// Names of attributes that are present but not read.
-  std::vector<std::string> unread;
+  std::vector<std::string> unread;  ///< attributes that are present but not read
   bool polygons;  ///< successive triangles with one first corner are a polygon [FB_ngon_encoding]
 
   /// Key that is equal for primitives that share their vertices.
-  using Vertices = std::tuple<std::optional<std::size_t>, std::optional<std::size_t>,
-                              std::vector<std::pair<std::size_t, std::size_t>>,
-                              std::vector<std::optional<std::size_t>>>;
-  Vertices vertices() const { return {positions, texture, joints, targets}; }
+  auto vertices() const { return std::tuple(positions, texture, joints, targets); }
 };
 
 struct GltfMesh {
@@ -84,9 +81,8 @@ struct GltfMesh {
   std::vector<GltfPrimitive> primitives;
   std::vector<std::string> target_names;
   std::vector<double> weights;
-
   /// Largest number of targets of its primitives; valid files have the same number in all.
-  std::size_t most_targets() const;
+  std::size_t most_targets;
 };
 
 struct GltfNode {
@@ -126,12 +122,8 @@ struct GltfAnimation {
 struct GltfDocument {
   std::string path, generator;
   std::vector<std::filesystem::path> files;
-  std::size_t file_bytes = 0;
-  /// Bytes of each buffer; empty for a fallback of compressed data.
-  std::vector<std::string> buffers;
-  /// Error messages for buffers whose files are missing, by buffer number. Thrown when a buffer is
-  /// used.
-  std::map<std::size_t, std::string> missing_buffers;
+  std::size_t file_bytes;  ///< bytes of all files
+  std::vector<GltfBuffer> buffers;
   std::vector<GltfView> views;
   std::vector<GltfAccessor> accessors;
   std::vector<GltfMesh> meshes;
@@ -140,8 +132,7 @@ struct GltfDocument {
   std::vector<GltfMaterial> materials;
   std::vector<GltfAnimation> animations;
   std::vector<std::size_t> roots;
-  /// False if the file says that its rest pose is only the first frame.
-  bool rest_is_known = true;
+  bool rest_is_known;  ///< false if the file says that its rest pose is only the first frame
   std::vector<std::string> notes;
 };
 

@@ -68,7 +68,7 @@ namespace {
 
 std::shared_ptr<const WeightCurve> curve_of(const GltfDocument& document, GltfValues& values,
                                             const GltfChannel& channel) {
-  const std::size_t targets = document.meshes[*document.nodes[channel.node].mesh].most_targets();
+  const std::size_t targets = document.meshes[*document.nodes[channel.node].mesh].most_targets;
   WeightCurve curve;
   const Frames keys = values.read(channel.times, 1);
   const Eigen::Index count = keys.rows(), columns = static_cast<Eigen::Index>(targets);
@@ -105,7 +105,7 @@ GltfClip clip_of(const GltfDocument& document, const GltfAnimation& animation,
   for (const GltfChannel& channel : animation.channels) {
     const auto& mesh = document.nodes[channel.node].mesh;
     if (channel.drives_weights && shown.contains(channel.node) && mesh &&
-        document.meshes[*mesh].most_targets() > 0) {
+        document.meshes[*mesh].most_targets > 0) {
       clip.channels.push_back(&channel);
     }
   }

@@ -121,7 +121,7 @@ class GltfReader {
     const std::vector<double>& own = document_.nodes[node].weights;
     const std::vector<double>& still = own.empty() ? mesh_at(node).weights : own;
     auto curve = std::make_shared<WeightCurve>();
-    const auto columns = static_cast<Eigen::Index>(mesh_at(node).most_targets());
+    const auto columns = static_cast<Eigen::Index>(mesh_at(node).most_targets);
     curve->values = Eigen::MatrixXd::Zero(1, columns);
     for (Eigen::Index j = 0; j < std::min(columns, Eigen::Index(still.size())); ++j) {
       curve->values(0, j) = still[static_cast<std::size_t>(j)];
@@ -144,7 +144,7 @@ class GltfReader {
     std::string name(is_named ? placed.name : mesh.name);
     if (name.empty()) name = number_name("mesh_", *document_.nodes[placed.node].mesh);
     // Primitives that share vertices become one part.
-    std::map<GltfPrimitive::Vertices, std::size_t> made;
+    std::map<decltype(mesh.primitives[0].vertices()), std::size_t> made;
     std::vector<PlacedPart> own;
     for (const GltfPrimitive& primitive : mesh.primitives) {
       if (!has_faces(primitive)) {

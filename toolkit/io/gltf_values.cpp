@@ -9,7 +9,6 @@
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {
-
 namespace {
 
 using MeshoptMode = GltfCompression::Mode;
@@ -37,256 +36,184 @@ bool may_hold(const GltfCompression& view, std::size_t bytes) {
   return view.count > 0 && view.count <= most;
 }
 
-int decode_meshopt(const GltfCompression& view, std::string_view bytes, std::string& to) {
-  const auto* from = reinterpret_cast<const unsigned char*>(bytes.data());
-  switch (view.mode) {
-    case MeshoptMode::attributes:
-      return meshopt_decodeVertexBuffer(to.data(), view.count, view.stride, from, bytes.size());
-    case MeshoptMode::triangles:
-      return meshopt_decodeIndexBuffer(to.data(), view.count, view.stride, from, bytes.size());
-    case MeshoptMode::indices:
-      return meshopt_decodeIndexSequence(to.data(), view.count, view.stride, from, bytes.size());
-  }
-  return -1;
-}
-
-void apply_filter(const GltfCompression& view, std::string& bytes) {
-  switch (view.filter) {
-    case MeshoptFilter::none:
-    case MeshoptFilter::color:
-      break;
-    case MeshoptFilter::octahedral:
-      meshopt_decodeFilterOct(bytes.data(), view.count, view.stride);
-      break;
-    case MeshoptFilter::quaternion:
-      meshopt_decodeFilterQuat(bytes.data(), view.count, view.stride);
-      break;
-    case MeshoptFilter::exponential:
-      meshopt_decodeFilterExp(bytes.data(), view.count, view.stride);
-      break;
-  }
-}
-
 }  // namespace
 
 std::string decompressed(const std::string& path, const std::string& what,
-                         const GltfCompression& compression, std::string_view bytes) {
-  if (compression.filter == MeshoptFilter::color) {
-    throw IoError(path, what + " has the filter COLOR, which is not read; use another filter");
+                         const GltfCompression& view, std::string_view bytes) {
+  constexpr decltype(&meshopt_decodeVertexBuffer) kDecoders[] = {
+      meshopt_decodeVertexBuffer, meshopt_decodeIndexBuffer, meshopt_decodeIndexSequence};
+  constexpr decltype(&meshopt_decodeFilterOct) kFilters[] = {
+      nullptr, meshopt_decodeFilterOct, meshopt_decodeFilterQuat, meshopt_decodeFilterExp};
+  const std::string elements = std::to_string(view.count) + " elements";
+  std::string problem, values;
+  if (view.filter == MeshoptFilter::color) {
+    problem = " has the filter COLOR, which is not read; use another filter";
+  } else if (view.mode == MeshoptMode::attributes && bytes.starts_with('\xa1')) {
+    problem =
+        " uses version 1 of the vertex codec, and only version 0 is read; "
+        "export it with EXT_meshopt_compression";
+  } else if (!has_sound_layout(view)) {
+    problem = ": no compressed view has " + elements + " of " + std::to_string(view.stride) +
+              " bytes in this mode";
+  } else if (!may_hold(view, bytes.size())) {
+    problem = ": " + std::to_string(bytes.size()) + " bytes cannot hold " + elements;
+  } else {
+    values.resize(view.count * view.stride);
+    const auto decode = kDecoders[static_cast<std::size_t>(view.mode)];
+    const auto* from = reinterpret_cast<const unsigned char*>(bytes.data());
+    const int error = decode(values.data(), view.count, view.stride, from, bytes.size());
+    if (error != 0) problem = " cannot be decompressed: it is damaged or of a newer version";
   }
-  constexpr std::string_view kSecondVertexCodec = "\xa1";
-  if (compression.mode == MeshoptMode::attributes && bytes.starts_with(kSecondVertexCodec)) {
-    throw IoError(path, what +
-                            " uses version 1 of the vertex codec, and only version 0 is read; "
-                            "export it with EXT_meshopt_compression");
-  }
-  if (!has_sound_layout(compression)) {
-    throw IoError(path, what + ": no compressed view has " + std::to_string(compression.count) +
-                            " elements of " + std::to_string(compression.stride) +
-                            " bytes in this mode");
-  }
-  if (!may_hold(compression, bytes.size())) {
-    throw IoError(path, what + ": " + std::to_string(bytes.size()) + " bytes cannot hold " +
-                            std::to_string(compression.count) + " elements");
-  }
-  std::string values(compression.count * compression.stride, '\0');
-  if (decode_meshopt(compression, bytes, values) != 0) {
-    throw IoError(path, what + " cannot be decompressed: it is damaged or of a newer version");
-  }
-  apply_filter(compression, values);
+  if (!problem.empty()) throw IoError(path, what + problem);
+  const auto undo = kFilters[static_cast<std::size_t>(view.filter)];
+  if (undo) undo(values.data(), view.count, view.stride);
   return values;
 }
 
 namespace {
 
-// Component types other than float (5126).
-constexpr int kGltfByte = 5120, kGltfUnsignedByte = 5121, kGltfShort = 5122,
-              kGltfUnsignedShort = 5123, kGltfUnsignedInt = 5125;
+struct GltfNumber {
+  std::size_t bytes;
+  bool is_index;
+  double one;  ///< integer that represents 1 in normalised components [glTF 2.0, 3.11]
+  void (*decode)(const char*, std::endian, std::span<double>);
+};
 
-std::size_t gltf_bytes(int type) {
-  if (type == kGltfByte || type == kGltfUnsignedByte) return 1;
-  return type == kGltfShort || type == kGltfUnsignedShort ? 2 : 4;
+template <typename Number>
+constexpr GltfNumber gltf_number() {
+  constexpr bool has_one = sizeof(Number) < 4;
+  return {sizeof(Number), std::is_unsigned_v<Number>,
+          has_one ? static_cast<double>(std::numeric_limits<Number>::max()) : 1,
+          decode_numbers<Number>};
 }
 
-double gltf_number(const char* at, int type) {
-  constexpr auto kOrder = std::endian::little;
-  switch (type) {
-    case kGltfByte:
-      return number_at<std::int8_t>(at, kOrder);
-    case kGltfUnsignedByte:
-      return number_at<std::uint8_t>(at, kOrder);
-    case kGltfShort:
-      return number_at<std::int16_t>(at, kOrder);
-    case kGltfUnsignedShort:
-      return number_at<std::uint16_t>(at, kOrder);
-    case kGltfUnsignedInt:
-      return number_at<std::uint32_t>(at, kOrder);
-    default:
-      return number_at<float>(at, kOrder);
-  }
-}
+/// Kinds of numbers, from component type 5120 on. Type 5124 does not exist.
+constexpr GltfNumber kGltfNumbers[] = {gltf_number<std::int8_t>(),
+                                       gltf_number<std::uint8_t>(),
+                                       gltf_number<std::int16_t>(),
+                                       gltf_number<std::uint16_t>(),
+                                       GltfNumber{},
+                                       gltf_number<std::uint32_t>(),
+                                       gltf_number<float>()};
 
-/// Integer that represents 1 in normalised components. [glTF 2.0, 3.11]
-double gltf_one(int type) {
-  switch (type) {
-    case kGltfByte:
-      return 127;
-    case kGltfUnsignedByte:
-      return 255;
-    case kGltfShort:
-      return 32767;
-    case kGltfUnsignedShort:
-      return 65535;
-    default:
-      return 1;
-  }
-}
-
-bool is_unsigned(int type) {
-  return type == kGltfUnsignedByte || type == kGltfUnsignedShort || type == kGltfUnsignedInt;
-}
-
-std::string accessor_name(std::size_t accessor) {
-  return "accessors[" + std::to_string(accessor) + ']';
+const GltfNumber& kind_of(int component_type) {
+  return kGltfNumbers[component_type - 5120];
 }
 
 }  // namespace
 
-void GltfValues::fail(const std::string& what, const std::string& message) const {
-  throw IoError(document_.path, what + ": " + message);
+void GltfValues::fail(std::size_t accessor, const std::string& message) const {
+  throw IoError(document_.path, "accessors[" + std::to_string(accessor) + "]: " + message);
 }
 
-std::string_view GltfValues::bytes(std::size_t view) {
-  const std::string what = "bufferViews[" + std::to_string(view) + ']';
-  const GltfView& stored = document_.views[view];
-  const auto part = [&](std::size_t buffer, std::size_t offset, std::size_t size) {
-    const auto missing = document_.missing_buffers.find(buffer);
-    if (missing != document_.missing_buffers.end()) throw IoError(document_.path, missing->second);
-    const std::string_view all = document_.buffers[buffer];
-    if (offset > all.size() || size > all.size() - offset) {
-      fail(what, "ends at byte " + std::to_string(offset) + " + " + std::to_string(size) +
-                     " of a buffer of " + std::to_string(all.size()));
-    }
-    return all.substr(offset, size);
-  };
-  if (!stored.compression) return part(stored.buffer, stored.offset, stored.bytes);
-  const GltfCompression& compression = *stored.compression;
-  auto [known, is_new] = decompressed_.try_emplace(view);
+std::string_view GltfValues::bytes(std::size_t index) {
+  const std::string what = "bufferViews[" + std::to_string(index) + ']';
+  const GltfView& view = document_.views[index];
+  const auto& packed = view.compression;
+  const GltfBuffer& buffer = document_.buffers[packed ? packed->buffer : view.buffer];
+  const std::size_t offset = packed ? packed->offset : view.offset;
+  const std::size_t size = packed ? packed->bytes : view.bytes, all = buffer.bytes.size();
+  if (!buffer.missing.empty()) throw IoError(document_.path, buffer.missing);
+  if (offset > all || size > all - offset) {
+    throw IoError(document_.path, what + ": ends at byte " + std::to_string(offset) + " + " +
+                                      std::to_string(size) + " of a buffer of " +
+                                      std::to_string(all));
+  }
+  const std::string_view stored = std::string_view(buffer.bytes).substr(offset, size);
+  if (!packed) return stored;
+  auto [known, is_new] = decompressed_.try_emplace(index);
+  std::string& values = known->second;
   if (is_new) {
-    known->second = decompressed(document_.path, what, compression,
-                                 part(compression.buffer, compression.offset, compression.bytes));
-    decompressed_bytes_ += known->second.size();
+    values = decompressed(document_.path, what, *packed, stored);
+    decompressed_bytes_ += values.size();
     // Many views may decompress the same bytes, so their sum is checked.
     check_scene_size(document_.path, static_cast<double>(decompressed_bytes_) / 24, 1,
                      document_.file_bytes);
   }
-  if (known->second.size() < stored.bytes) {
-    fail(what, "holds " + std::to_string(known->second.size()) + " bytes, expected " +
-                   std::to_string(stored.bytes));
-  }
-  return std::string_view(known->second).substr(0, stored.bytes);
+  if (values.size() >= view.bytes) return std::string_view(values).substr(0, view.bytes);
+  throw IoError(document_.path, what + ": holds " + std::to_string(values.size()) +
+                                    " bytes, expected " + std::to_string(view.bytes));
 }
 
-Frames GltfValues::stored(const std::string& what, const GltfPlace& place, Eigen::Index count,
+Frames GltfValues::stored(std::size_t accessor, const GltfPlace& place, std::size_t count,
                           int components, int type) {
   const std::string_view all = bytes(place.view);
-  const std::size_t size = gltf_bytes(type), element = static_cast<std::size_t>(components) * size;
+  const GltfNumber& kind = kind_of(type);
+  const std::size_t element = static_cast<std::size_t>(components) * kind.bytes;
   const std::size_t given = document_.views[place.view].stride;
   const std::size_t stride = given > 0 ? given : element;
   if (stride < element) {
-    fail(what, "elements of " + std::to_string(element) + " bytes stand " + std::to_string(stride) +
-                   " apart");
+    fail(accessor, "elements of " + std::to_string(element) + " bytes stand " +
+                       std::to_string(stride) + " apart");
   }
   const std::size_t held = all.size() - std::min(all.size(), place.offset);
-  if (held < element || (held - element) / stride < static_cast<std::size_t>(count - 1)) {
-    fail(what, "its " + std::to_string(count) + " elements do not lie within bufferViews[" +
-                   std::to_string(place.view) + "] of " + std::to_string(all.size()) + " bytes");
+  if (held < element || (held - element) / stride < count - 1) {
+    fail(accessor, "its " + std::to_string(count) + " elements do not lie within bufferViews[" +
+                       std::to_string(place.view) + "] of " + std::to_string(all.size()) +
+                       " bytes");
   }
-  Frames values(count, components);
-  const char* at = all.data() + place.offset;
-  for (Eigen::Index i = 0; i < count; ++i, at += stride) {
-    for (int c = 0; c < components; ++c) {
-      values(i, c) = gltf_number(at + static_cast<std::size_t>(c) * size, type);
-    }
-    if (i + 1 == count) break;
+  Frames values(static_cast<Eigen::Index>(count), components);
+  for (std::size_t i = 0; i < count; ++i) {
+    kind.decode(
+        all.data() + place.offset + i * stride, std::endian::little,
+        {values.row(static_cast<Eigen::Index>(i)).data(), static_cast<std::size_t>(components)});
   }
   return values;
 }
 
-void GltfValues::replace_sparse(const std::string& what, const GltfAccessor& accessor,
-                                Frames& values) {
-  const GltfSparse& sparse = *accessor.sparse;
-  if (sparse.count == 0) return;
-  if (!is_unsigned(sparse.index_type)) fail(what, "its sparse indices are no counts");
-  const auto count = static_cast<Eigen::Index>(sparse.count);
-  const Frames places = stored(what + ".sparse", sparse.indices, count, 1, sparse.index_type);
-  const Frames given =
-      stored(what + ".sparse", sparse.values, count, accessor.components, accessor.type);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const double place = places(i, 0);
-    if (place >= static_cast<double>(values.rows())) {
-      fail(what, "replaces element " + std::to_string(static_cast<std::size_t>(place)) + " of " +
-                     std::to_string(values.rows()));
-    }
-    values.row(static_cast<Eigen::Index>(place)) = given.row(i);
-  }
-}
-
-Frames GltfValues::read(std::size_t index, int components) {
+Frames GltfValues::read(std::size_t index, int components, std::optional<Eigen::Index> expected) {
   const GltfAccessor& accessor = document_.accessors[index];
-  const std::string what = accessor_name(index);
+  const std::string count = std::to_string(accessor.count) + " elements";
   if (accessor.components != components) {
-    fail(what, "has " + std::to_string(accessor.components) + " numbers an element, expected " +
-                   std::to_string(components));
+    fail(index, "has " + std::to_string(accessor.components) + " numbers an element, expected " +
+                    std::to_string(components));
+  }
+  if (expected && accessor.count != static_cast<std::size_t>(*expected)) {
+    fail(index, "has " + count + ", expected " + std::to_string(*expected));
   }
   constexpr std::size_t kMost = std::numeric_limits<int>::max() / 16;
-  if (accessor.count > kMost) fail(what, "has " + std::to_string(accessor.count) + " elements");
-  const auto count = static_cast<Eigen::Index>(accessor.count);
+  if (accessor.count > kMost) fail(index, "has " + count);
   Frames values;
   if (accessor.place) {
-    values = stored(what, *accessor.place, count, components, accessor.type);
+    values = stored(index, *accessor.place, accessor.count, components, accessor.type);
   } else if (accessor.count > document_.file_bytes) {
-    fail(what, std::to_string(accessor.count) + " elements of which the file holds nothing");
+    fail(index, count + " of which the file holds nothing");
   } else {
-    values = Frames::Zero(count, components);
+    values = Frames::Zero(static_cast<Eigen::Index>(accessor.count), components);
   }
-  if (accessor.sparse) replace_sparse(what, accessor, values);
+  if (accessor.sparse && accessor.sparse->count > 0) {
+    const GltfSparse& sparse = *accessor.sparse;
+    if (!kind_of(sparse.index_type).is_index) fail(index, "its sparse indices are no counts");
+    const Frames places = stored(index, sparse.indices, sparse.count, 1, sparse.index_type);
+    const Frames given = stored(index, sparse.values, sparse.count, components, accessor.type);
+    if (places.maxCoeff() >= static_cast<double>(values.rows())) {
+      fail(index, "replaces elements beyond its " + count);
+    }
+    for (Eigen::Index i = 0; i < places.rows(); ++i) {
+      values.row(static_cast<Eigen::Index>(places(i, 0))) = given.row(i);
+    }
+  }
   values = scaled(index, std::move(values));
-  if (!values.allFinite()) fail(what, "holds a number that is not finite");
+  if (!values.allFinite()) fail(index, "holds a number that is not finite");
   return values;
 }
 
 Frames GltfValues::scaled(std::size_t index, Frames stored) const {
   const GltfAccessor& accessor = document_.accessors[index];
-  if (accessor.normalized) stored = (stored / gltf_one(accessor.type)).cwiseMax(-1);
+  if (accessor.normalized) stored = (stored / kind_of(accessor.type).one).cwiseMax(-1);
   return stored;
-}
-
-Frames GltfValues::read(std::size_t accessor, int components, Eigen::Index count) {
-  const std::size_t held = document_.accessors[accessor].count;
-  if (held != static_cast<std::size_t>(count)) {
-    fail(accessor_name(accessor),
-         "has " + std::to_string(held) + " elements, expected " + std::to_string(count));
-  }
-  return read(accessor, components);
 }
 
 std::vector<int> GltfValues::indices(std::size_t index, Eigen::Index size) {
   const GltfAccessor& accessor = document_.accessors[index];
-  if (!is_unsigned(accessor.type) || accessor.normalized) {
-    fail(accessor_name(index), "holds no indices");
-  }
+  if (!kind_of(accessor.type).is_index || accessor.normalized) fail(index, "holds no indices");
   const Frames values = read(index, 1);
-  std::vector<int> indices;
-  indices.reserve(static_cast<std::size_t>(values.rows()));
-  for (const double value : values.reshaped<Eigen::RowMajor>()) {
-    if (value >= static_cast<double>(size)) {
-      fail(accessor_name(index), "names vertex " + std::to_string(static_cast<std::size_t>(value)) +
-                                     ", expected 0 to " + std::to_string(size - 1));
-    }
-    indices.push_back(static_cast<int>(value));
+  if (values.maxCoeff() >= static_cast<double>(size)) {
+    fail(index, "names vertex " + std::to_string(static_cast<std::size_t>(values.maxCoeff())) +
+                    ", expected 0 to " + std::to_string(size - 1));
   }
-  return indices;
+  const Eigen::VectorXi whole = values.col(0).cast<int>();
+  return {whole.begin(), whole.end()};
 }
 
 }  // namespace mimetra

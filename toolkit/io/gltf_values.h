@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,10 +20,8 @@ class GltfValues {
   explicit GltfValues(const GltfDocument& document) : document_(document) {}
 
   /// Numbers of an accessor (count x components); normalised integers are scaled. Throws IoError
-  /// unless each element has `components` finite numbers.
-  Frames read(std::size_t accessor, int components);
-  /// Same; also throws IoError unless there are `count` elements.
-  Frames read(std::size_t accessor, int components, Eigen::Index count);
+  /// unless each element has `components` finite numbers and, if given, the count is `count`.
+  Frames read(std::size_t accessor, int components, std::optional<Eigen::Index> count = {});
   /// Scales numbers that are stored outside the accessor if it normalises them.
   Frames scaled(std::size_t accessor, Frames stored) const;
   /// Indices below `size`.
@@ -31,10 +30,9 @@ class GltfValues {
 
  private:
   /// Elements of `type` from `place` on, unscaled.
-  Frames stored(const std::string& what, const GltfPlace& place, Eigen::Index count, int components,
+  Frames stored(std::size_t accessor, const GltfPlace& place, std::size_t count, int components,
                 int type);
-  void replace_sparse(const std::string& what, const GltfAccessor& accessor, Frames& values);
-  [[noreturn]] void fail(const std::string& what, const std::string& message) const;
+  [[noreturn]] void fail(std::size_t accessor, const std::string& message) const;
 
   const GltfDocument& document_;
   std::map<std::size_t, std::string> decompressed_;
