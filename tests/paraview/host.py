@@ -9,10 +9,11 @@ import tempfile
 import unittest
 
 import numpy as np
-from paraview import simple
+from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkPoints, vtkStringOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 FRAMES = "0:120:10"
@@ -128,6 +129,39 @@ def moving(frames=4, size=6):
     return [mesh_of(positions + [0, 0, 1] * bump, quads) for bump in bumps]
 
 
+def numbered(source):
+    """With global ids of points and cells, in the order that one process knows, which are also the
+    point data `number`, because blocks lose their ids if they are put together."""
+    named = simple.GenerateGlobalIds(Input=source)
+    return simple.Calculator(Input=named, Function="GlobalPointIds", ResultArrayName="number")
+
+
+def distributed(source):
+    return simple.ExtractSurface(Input=simple.RedistributeDataSet(Input=source))
+
+
+def with_ghosts(source):
+    return simple.GhostCellsGenerator(Input=distributed(source), BuildIfRequired=0,
+                                      MinimumNumberOfGhosts=2)
+
+
+def in_one(blocks):
+    together = vtkAppendPolyData()
+    leaves = blocks.NewIterator()
+    while not leaves.IsDoneWithTraversal():
+        together.AddInputData(leaves.GetCurrentDataObject())
+        leaves.GoToNextItem()
+    together.Update()
+    return together.GetOutput()
+
+
+def fetched(proxy, time=0):
+    """The pieces of all processes, one after the other."""
+    proxy.UpdatePipeline(time)
+    data = servermanager.Fetch(proxy)
+    return in_one(data) if data.IsA("vtkCompositeDataSet") else data
+
+
 def write_mesh(path, mesh):
     writer = vtkXMLPolyDataWriter()
     writer.SetFileName(str(path))
@@ -171,6 +205,13 @@ class HostTest(unittest.TestCase):
         for name in rows[0]:
             self.assert_same(column(table, "Time" if name == "time" else name),
                              np.array([float(row[name]) for row in rows]), name)
+
+    def by_id(self, values, ids, count):
+        """In the order of ids; what several processes have, they have alike."""
+        unique, first, which = np.unique(ids, return_index=True, return_inverse=True)
+        self.assertEqual(list(unique), list(range(count)))
+        self.assertEqual(values.tobytes(), values[first][which].tobytes())
+        return values[first]
 
     def assert_same(self, found, expected, what=""):
         """Equal bit for bit: NaN too, and of one type."""

@@ -3,44 +3,10 @@
 import unittest
 
 from paraview import servermanager
-from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
 from host import *
 
 ERROR = "ERR"
-
-
-def numbered(source):
-    """With global ids of points and cells, in the order that one process knows, which are also the
-    point data `number`, as blocks lose their ids where they are put together."""
-    named = simple.GenerateGlobalIds(Input=source)
-    return simple.Calculator(Input=named, Function="GlobalPointIds", ResultArrayName="number")
-
-
-def distributed(source):
-    return simple.ExtractSurface(Input=simple.RedistributeDataSet(Input=source))
-
-
-def with_ghosts(source):
-    return simple.GhostCellsGenerator(Input=distributed(source), BuildIfRequired=0,
-                                      MinimumNumberOfGhosts=2)
-
-
-def in_one(blocks):
-    together = vtkAppendPolyData()
-    leaves = blocks.NewIterator()
-    while not leaves.IsDoneWithTraversal():
-        together.AddInputData(leaves.GetCurrentDataObject())
-        leaves.GoToNextItem()
-    together.Update()
-    return together.GetOutput()
-
-
-def fetched(proxy, time=0):
-    """The pieces of all processes, one after the other."""
-    proxy.UpdatePipeline(time)
-    data = servermanager.Fetch(proxy)
-    return in_one(data) if data.IsA("vtkCompositeDataSet") else data
 
 
 def largest_piece(proxy):
@@ -58,13 +24,6 @@ class Processes(HostTest):
 
     def take(self):
         return simple.mimetraSequence(FileName=str(self.sample.take))
-
-    def by_id(self, values, ids, count):
-        """In the order of ids; what several processes have, they have alike."""
-        unique, first, which = np.unique(ids, return_index=True, return_inverse=True)
-        self.assertEqual(list(unique), list(range(count)))
-        self.assertEqual(values.tobytes(), values[first][which].tobytes())
-        return values[first]
 
     def assert_as_alone(self, alone, shared, names=(), on_cells=(), times=(0, 3)):
         """The outputs of a filter of the whole take, and of pieces with ids."""
@@ -90,22 +49,6 @@ class Processes(HostTest):
         whole = fetched(self.take()).GetNumberOfPoints()
         self.assertEqual(largest_piece(self.take()), whole)
         self.assertLess(largest_piece(distributed(self.take())), 0.9 * whole)
-
-    def test_geodesic_distances_are_those_of_one_process(self):
-        alone = simple.GeodesicDistance(Input=self.take(), Source="100,2000")
-        for pieces in [distributed, with_ghosts]:
-            shared = simple.GeodesicDistance(Input=pieces(numbered(self.take())),
-                                             Source="100,2000")
-            self.assert_as_alone(alone, shared, ["distance", "support"])
-
-    def test_regions_are_those_of_one_process(self):
-        alone = simple.RegionsofInterest(Input=self.take(), K=5, DisplayedRegion=2)
-        names = ["region", "region_count", "roi", "displacement", "displayed_region"]
-        for pieces in [distributed, with_ghosts]:
-            shared = simple.RegionsofInterest(Input=pieces(numbered(self.take())), K=5,
-                                              DisplayedRegion=2)
-            self.assert_as_alone(alone, shared, names, ["in_L"])
-            self.assertEqual(decompositions(shared), 1)
 
     def test_transferred_meshes_are_those_of_one_process(self):
         def still():
@@ -165,19 +108,12 @@ class Processes(HostTest):
         self.assert_as_alone(chain(self.take()), chain(distributed(numbered(self.take()))),
                              ["distance", "region"])
 
-    def test_pieces_without_ids_give_the_same_regions(self):
-        series = simple.Calculator(Input=self.series_of("bare", moving(size=20)),
-                                   Function="coordsX + 20 * coordsY", ResultArrayName="number")
-        alone = simple.RegionsofInterest(Input=series, K=2)
-        shared = simple.RegionsofInterest(Input=distributed(series), K=2)
-        self.assert_as_alone(alone, shared, ["number", "region", "roi", "displacement"])
-
-    def test_numbers_of_points_are_refused_without_ids(self):
-        series = distributed(self.series_of("unnamed", moving(size=20)))
-        self.assert_refused(simple.GeodesicDistance(Input=series),
-                            "'Source' goes by the numbers of points")
-        self.assert_refused(simple.RegionTransfer(Input=series, TargetFile=str(self.sample.head)),
-                            "'Target' goes by the numbers of points")
+    def test_a_target_without_global_ids_is_refused(self):
+        bare = distributed(self.series_of("bare", moving(size=20)))
+        take = distributed(numbered(self.take()))
+        self.assert_refused(simple.RegionTransfer(Input=take, Target=bare, K=5),
+                            "process 0 has a piece of the target without global ids; apply the "
+                            "filter Generate Global Ids before distributing it")
 
     def test_the_rest_pose_goes_with_its_points(self):
         alone = simple.RegionsofInterest(Input=self.take(), K=5)
@@ -206,17 +142,18 @@ class Processes(HostTest):
         series = self.series_of("with_rest", meshes)
         self.assertGreater(fetched(simple.RegionsofInterest(Input=series, K=2)
                                    ).GetNumberOfPoints(), 0)
-        for pieces in [distributed(series), distributed(simple.GenerateGlobalIds(Input=series)),
+        for pieces in [distributed(simple.GenerateGlobalIds(Input=series)),
                        simple.GenerateGlobalIds(Input=distributed(series))]:
             self.assert_refused(simple.RegionsofInterest(Input=pieces, K=2),
-                                "the rest pose is field data (mimetra_rest)")
+                                "the rest pose of the mesh is field data (mimetra_rest)")
 
     def strips(self, steps, shown="time", held="True"):
-        """Of each process a strip of a bump that goes along all; `steps`, the time of what comes
-        out and whether anything does are Python, of the process `p`."""
+        """Of each process a strip of a bump that goes along all, with global ids; `steps`, the
+        time of what comes out and whether anything does are Python, of the process `p`."""
         source = simple.ProgrammableSource(OutputDataSetType="vtkPolyData")
         begin = ("from vtkmodules.vtkParallelCore import vtkMultiProcessController as Controller\n"
                  "p = Controller.GetGlobalController().GetLocalProcessId()\n"
+                 "row = 5 * Controller.GetGlobalController().GetNumberOfProcesses() + 1\n"
                  "executive = self.GetExecutive()\n"
                  "out = executive.GetOutputInformation(0)\n")
         source.ScriptRequestInformation = begin + (
@@ -228,7 +165,7 @@ class Processes(HostTest):
             "if steps: out.Set(executive.TIME_RANGE(), [steps[0], steps[-1]], 2)\n")
         source.Script = begin + (
             "import numpy as np\n"
-            "from vtkmodules.vtkCommonCore import vtkPoints\n"
+            "from vtkmodules.vtkCommonCore import vtkIdTypeArray, vtkPoints\n"
             "from vtkmodules.vtkCommonDataModel import vtkCellArray\n"
             "asked = executive.UPDATE_TIME_STEP()\n"
             "time = out.Get(asked) if out.Has(asked) else 0.0\n"
@@ -236,12 +173,20 @@ class Processes(HostTest):
             f"mesh.GetInformation().Set(mesh.DATA_TIME_STEP(), float({shown}))\n"
             f"if not ({held}): return\n"
             "points, quads = vtkPoints(), vtkCellArray()\n"
+            "ids, cell_ids = vtkIdTypeArray(), vtkIdTypeArray()\n"
+            "ids.SetName('ids')\n"
+            "cell_ids.SetName('ids')\n"
             "for i in range(30):\n"
+            "    ids.InsertNextValue(i // 6 * row + 5 * p + i % 6)\n"
             "    x, y = 5.0 * p + i % 6, float(i // 6)\n"
             "    points.InsertNextPoint(x, y, np.exp(-(x - 2 - time)**2 - (y - 2)**2))\n"
-            "    if i % 6 < 5 and i < 24: quads.InsertNextCell(4, [i, i + 1, i + 7, i + 6])\n"
+            "    if i % 6 == 5 or i >= 24: continue\n"
+            "    quads.InsertNextCell(4, [i, i + 1, i + 7, i + 6])\n"
+            "    cell_ids.InsertNextValue(ids.GetValue(i))\n"
             "mesh.SetPoints(points)\n"
-            "mesh.SetPolys(quads)\n")
+            "mesh.SetPolys(quads)\n"
+            "mesh.GetPointData().SetGlobalIds(ids)\n"
+            "mesh.GetCellData().SetGlobalIds(cell_ids)\n")
         return source
 
     def test_pieces_of_different_times_are_refused(self):
@@ -250,31 +195,15 @@ class Processes(HostTest):
         for steps in ["range(4 if p == 0 else 2)", "range(4 if p == 0 else 0)",
                       "[0, 1, 2 + p, 5]"]:
             filter = simple.RegionsofInterest(Input=self.strips(steps), K=2)
-            self.assert_refused(filter, "the time steps of process 1")
+            self.assert_refused(filter,
+                                "process 1: its time steps are not those of process 0")
             for time in [1, 0]:
                 self.assertEqual(fetched(filter, time).GetNumberOfPoints(), 0)
         late = self.strips("range(4)", shown="time if p == 0 or time < 1 else 1")
         filter = simple.RegionsofInterest(Input=late, K=2)
-        self.assert_refused(filter, "process 1 has a piece of time 1, process 0 of time 2")
+        self.assert_refused(filter, "process 1 has a piece of time 1, others of time 2")
         for time in [2, 1, 3]:
             self.assertEqual(fetched(filter, time).GetNumberOfPoints(), 0)
-
-    def test_points_that_positions_join_are_named_once(self):
-        series = self.series_of("cut", moving(size=20))
-        filter = simple.RegionsofInterest(Input=distributed(series), K=2)
-        with Messages() as messages:
-            self.assertGreater(fetched(filter, 0).GetNumberOfPoints(), 0)
-            fetched(filter, 1)
-            filter.K = 3
-            fetched(filter, 1)
-        self.assertEqual(messages.text.count("and were joined"), 1, messages.text)
-        self.assert_refused(simple.RegionsofInterest(Input=distributed(series), K=2, Weld="none"),
-                            "whether 'Weld' none keeps them apart")
-        named = simple.RegionsofInterest(
-            Input=distributed(simple.GenerateGlobalIds(Input=series)), K=2, Weld="none")
-        with Messages() as messages:
-            self.assertGreater(fetched(named).GetNumberOfPoints(), 0)
-        self.assertNotIn("joined", messages.text)
 
     def test_times_that_only_the_first_process_knows_are_shown_by_all(self):
         known = self.strips("range(4 if p == 0 else 0)", held="p == 0")
@@ -293,18 +222,22 @@ class Processes(HostTest):
         self.assertGreater(np.abs(moved).max(), 0)
         self.assert_same(point_array(found, "displacement"), moved)
 
-    def test_numbers_of_points_are_refused_where_ids_have_gaps(self):
+    def test_numbers_of_points_count_ids_that_have_gaps(self):
         some = simple.Threshold(Input=distributed(numbered(self.take())),
                                 Scalars=["POINTS", "number"], LowerThreshold=50,
                                 UpperThreshold=1e9)
-        self.assert_refused(simple.GeodesicDistance(Input=simple.ExtractSurface(Input=some)),
-                            "'Source' goes by the numbers of points")
+        found = fetched(simple.GeodesicDistance(Input=simple.ExtractSurface(Input=some),
+                                                Source="0"))
+        ids = point_array(found, "number")
+        self.assertGreaterEqual(ids.min(), 50)
+        sources = ids[point_array(found, "distance") == 0]
+        self.assertEqual(set(sources), {ids.min()})
 
     def test_pieces_that_one_process_was_given_are_refused_where_points_come_twice(self):
         together = simple.AggregateDataset(Input=distributed(numbered(self.take())),
                                            NumberOfTargetProcesses=1)
         self.assert_refused(simple.GeodesicDistance(Input=together, Source="100"),
-                            "expected one for each point")
+                            "names two points of process ")
 
     def test_what_one_process_refuses_is_refused_once(self):
         self.assert_refused(simple.RegionsofInterest(Input=distributed(numbered(self.take())),
@@ -317,17 +250,24 @@ class Processes(HostTest):
 
     def test_a_sphere_is_measured_across_its_pieces(self):
         sphere = simple.Sphere(ThetaResolution=64, PhiResolution=64)
-        self.assert_refused(simple.GeodesicDistance(Input=sphere), "'Source' goes by the numbers")
+        self.assert_refused(simple.GeodesicDistance(Input=sphere), "without global ids")
+        if servermanager.ActiveConnection.GetNumberOfDataPartitions() > 2:
+            return  # the tolerance does not reach from the first process to the last
         named = simple.GeodesicDistance(Input=simple.GenerateGlobalIds(Input=sphere,
                                                                        Tolerance=1e-6))
-        if servermanager.ActiveConnection.GetNumberOfDataPartitions() == 2:
-            # As the test of one process: half the circumference.
-            distance = point_array(fetched(named), "distance")
-            self.assertAlmostEqual(distance.max(), np.pi / 2, delta=0.05 * np.pi / 2)
-        else:  # the tolerance does not reach from the first process to the last
-            self.assert_refused(named, "nearly at one position")
-        open_seam = simple.GenerateGlobalIds(Input=sphere)
-        self.assert_refused(simple.GeodesicDistance(Input=open_seam), "nearly at one position")
+        # As the test of one process: half the circumference.
+        distance = point_array(fetched(named), "distance")
+        self.assertAlmostEqual(distance.max(), np.pi / 2, delta=0.05 * np.pi / 2)
+
+    def test_a_texture_seam_stays_open_or_is_refused(self):
+        quads = [[0, 1, 2, 3], [4, 5, 6, 7]]
+        positions = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0],
+                     [1, 0, 0], [2, 0, 0], [2, 1, 0], [1, 1, 0]]
+        seam = self.series_of("seam", [mesh_of(np.array(positions, dtype=float), quads)])
+        self.assertEqual(fetched(simple.GeodesicDistance(Input=seam)).GetNumberOfPoints(), 8)
+        # Generate Global Ids gives points at one position the same id.
+        named = simple.GenerateGlobalIds(Input=seam)
+        self.assert_refused(simple.GeodesicDistance(Input=named), "names two points of process 0")
 
     def test_empty_pieces_pass_silently(self):
         with Messages() as messages:

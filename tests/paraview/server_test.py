@@ -100,8 +100,8 @@ class OfTwoProcesses(HostTest):
         self.assertEqual(fetched(filter).GetNumberOfPoints(), 0)
         said = self.server.errors()[before:]
         self.assertEqual(len(said), 1, said)
-        self.assertIn("'Source' goes by the numbers of points, which say nothing while 2 processes "
-                      "hold pieces of the mesh without global ids", said[0])
+        self.assertIn("process 0 has a piece of the mesh without global ids; apply the filter "
+                      "Generate Global Ids", said[0])
 
 
 if __name__ == "__main__":

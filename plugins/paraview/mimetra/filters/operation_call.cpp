@@ -58,8 +58,6 @@ const Operation& found(const OperationTable& table, const std::string& name) {
   throw std::invalid_argument("there is no operation '" + name + "'; is its plugin missing?");
 }
 
-/// Parameter that lists points by their numbers.
-constexpr const char* kPoints = "source";
 constexpr const char* kComponents = "components";
 constexpr const char* kComponentsOut = "components-out";
 
@@ -114,33 +112,6 @@ bool OperationCall::set(const std::string& name, const ParameterValue& value) {
 
 bool OperationCall::looks_at_fields(const std::string& input) const {
   return std::ranges::find(operation_.inputs, input, &Input::name)->fields;
-}
-
-std::optional<std::string> OperationCall::told_by_numbers() const {
-  for (const Input& input : operation_.inputs) {
-    const bool comes_in = &input == piped_input(operation_) && !values_.contains(input.name);
-    const bool is_there = given_.contains(input.name) || values_.contains(input.name);
-    if (is_there && !comes_in) return label_of(input.name);
-  }
-  for (const Parameter& parameter : table_.parameters_of(operation_)) {
-    const bool is_list_of_points =
-        parameter.kind == ParameterKind::integer_list && parameter.name == kPoints;
-    const auto value = values_.find(parameter.name);
-    const bool is_file = parameter.kind == ParameterKind::file && value != values_.end() &&
-                         !is_word(parameter, to_text(value->second));
-    if (is_list_of_points || is_file) return label_of(parameter.name);
-  }
-  return {};
-}
-
-bool OperationCall::keeps_vertices_apart() const {
-  const auto declared = table_.parameters_of(operation_);
-  const auto weld = std::ranges::find(declared, "weld", &Parameter::name);
-  if (weld == declared.end()) return false;
-  const auto value = values_.find(weld->name);
-  const ParameterValue chosen =
-      value == values_.end() ? weld->fallback : value_of(*weld, value->second);
-  return to_text(chosen) == choice_name(Welding::none);
 }
 
 const Data* OperationCall::given(const std::string& input) const {

@@ -30,11 +30,6 @@ class OperationCall {
 
   /// Returns whether the operation reads the fields of an input.
   bool looks_at_fields(const std::string& input) const;
-  /// Label, as in the dialog, of what refers to points by their numbers: a parameter, a file, or a
-  /// mesh other than the first input, with points in the same order. Nothing if there is none.
-  std::optional<std::string> told_by_numbers() const;
-  /// Returns whether distances do not cross between vertices at the same position.
-  bool keeps_vertices_apart() const;
   /// Value that an input was given, or null.
   const mimetra::Data* given(const std::string& input) const;
   /// Gives an input its value. Returns whether the value differs from the one before.

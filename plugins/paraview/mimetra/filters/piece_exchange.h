@@ -3,37 +3,32 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <utility>
+#include <string>
 #include <vector>
 
 #include "plugins/paraview/mimetra/filters/attempt.h"
-#include "plugins/paraview/mimetra/filters/merged_pieces.h"
-#include "plugins/paraview/mimetra/filters/parcel.h"
+#include "plugins/paraview/mimetra/filters/joined_pieces.h"
+#include "plugins/paraview/mimetra/filters/processes.h"
 
-class vtkDataObject;
 class vtkInformation;
 class vtkInformationVector;
-
-/// Input at a port of a process.
-struct Incoming {
-  vtkDataObject* data = nullptr;
-  std::vector<double> steps = {};  ///< available times
-};
 
 /// Empties the outputs, so that no process keeps a part that others lack. The outputs get the
 /// requested time on all processes, because VTK uses it to decide whether to ask a process again.
 void empty_outputs(vtkInformationVector& outputs);
 
 /// Runs a filter that needs whole meshes on a server of several processes, each with one piece. The
-/// first process works on meshes merged from all pieces, and the others follow its orders. With one
+/// first process works on meshes joined from all pieces, and the others follow its orders. With one
 /// process, nothing is exchanged. Collective functions must be called by all processes.
 class PieceExchange {
  public:
   /// Reads the input at a port of this process, at a time if one is given. Throws if the input
   /// cannot be read.
-  using Input = std::function<Incoming(int port, std::optional<double> time)>;
+  using Input = std::function<vtkDataObject*(int port, std::optional<double> time)>;
+  /// Returns the times that are available at a port of this process.
+  using Steps = std::function<std::vector<double>(int port)>;
 
-  explicit PieceExchange(Input input) : input_(std::move(input)) {}
+  PieceExchange(Input input, Steps steps) : input_(std::move(input)), steps_(std::move(steps)) {}
 
   /// Call this on each process when a request begins. Returns true if a request for pieces follows
   /// one for the whole mesh, or the reverse: earlier inputs then do not count. Throws
@@ -42,7 +37,6 @@ class PieceExchange {
   /// Returns false if this process has the whole mesh.
   bool in_pieces() const { return processes_.has_value(); }
   bool is_first() const { return !processes_ || processes_->is_first(); }
-  int processes() const { return processes_ ? processes_->count() : 1; }
   /// Collective. Returns whether `mine` is true on all processes.
   bool all(bool mine) { return !processes_ || processes_->all(mine); }
   /// Collective. Returns the words of the first process.
@@ -50,41 +44,33 @@ class PieceExchange {
     return processes_ ? processes_->told(words) : words;
   }
 
-  /// On the first process: input at a port, merged from the pieces of all processes. Throws
-  /// MismatchError for pieces that do not fit, such as pieces of different times. Throws
-  /// std::invalid_argument if a piece is not a mesh, and IoError if a process cannot read its
-  /// piece.
-  vtkDataObject* input_at(int port, std::optional<double> time);
-  /// On the first process: forgets the mesh at a port, because another one follows.
-  void forget(int port) { merged_.erase(port); }
-  /// On the first process: returns whether the points of a mesh have the numbers that a single
-  /// process would see.
-  bool is_ordered(int port) const;
-  /// On the first process: number of points of a mesh that were joined with others by their
-  /// positions alone.
-  std::size_t joined(int port) const;
+  /// On the first process: input at a port, joined from the pieces of all processes. Throws what
+  /// joined() throws, and MismatchError for pieces of different times. Throws std::invalid_argument
+  /// if a piece is not a mesh, and IoError if a process cannot read its piece.
+  vtkDataObject* input_at(int port, const std::string& name, std::optional<double> time);
 
-  /// On the first process: gives the others their pieces of the outputs, and keeps its own. Returns
-  /// false if some process lacks memory. The outputs of all processes are empty in that case, if
-  /// this throws, and unless `how` is done.
-  bool end(Attempt how, vtkInformationVector& outputs);
+  /// On the first process: gives the others their pieces of the outputs, and keeps its own. The
+  /// outputs of all processes are empty if this throws, and unless `how` is done.
+  void end(Attempt how, vtkInformationVector& outputs);
   /// On the other processes: follows the first one's orders until the request ends.
   Attempt serve(vtkInformationVector& outputs);
 
  private:
-  /// Collective. Gathers the pieces at a port on the first process.
-  std::optional<std::vector<Parcel>> gather(int port, std::optional<double> time);
-  /// Collective. Gives each process its piece of the outputs. Returns false on all if one lacks
-  /// memory.
-  bool share(std::vector<Parcel> parcels, vtkInformationVector& outputs);
+  enum class Order;
+  struct Piece;
 
-  void put_outputs(Parcel& parcel, vtkInformationVector& outputs, std::size_t process) const;
-  void put_mesh(Parcel& parcel, vtkPolyData& output, std::size_t process) const;
-  void take_outputs(Parcel& parcel, vtkInformationVector& outputs);
-  void take_mesh(Parcel& parcel, vtkPolyData& output);
+  /// On the first process: tells the others what to do next.
+  void command(Order order);
+  /// Collective. Gathers the pieces at a port on the first process.
+  std::vector<Piece> gather(vtkMultiProcessStream order);
+  /// Collective. Gives each process its parts of the outputs, or empties them if the first process
+  /// has not done its work. Returns what that process passes. Throws std::bad_alloc on all.
+  Attempt finish(Attempt how, const Processes::Data& parts, vtkInformationVector& outputs);
+  /// Part of an output for a process; null for a table.
+  vtkSmartPointer<vtkDataObject> part_for(std::size_t process, vtkDataObject* output) const;
 
   Input input_;
+  Steps steps_;
   std::optional<Processes> processes_;
-  std::map<int, MergedPieces> merged_;                  ///< on the first process, by port
-  std::map<int, vtkSmartPointer<vtkPolyData>> pieces_;  ///< of this process, by port
+  std::map<int, JoinedPieces> joined_;  ///< on the first process, by port
 };

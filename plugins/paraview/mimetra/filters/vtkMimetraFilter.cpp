@@ -1,7 +1,6 @@
 #include "plugins/paraview/mimetra/filters/vtkMimetraFilter.h"
 
 #include <algorithm>
-#include <new>
 
 #include <vtkAlgorithmOutput.h>
 #include <vtkDataObject.h>
@@ -16,8 +15,6 @@
 #include "plugins/paraview/mimetra/filters/filter_proxies.h"
 #include "plugins/paraview/mimetra/filters/host_output.h"
 #include "plugins/paraview/mimetra/filters/operation_call.h"
-#include "plugins/paraview/mimetra/filters/parcel.h"
-#include "plugins/paraview/mimetra/filters/piece_answer.h"
 #include "plugins/paraview/mimetra/filters/piece_exchange.h"
 #include "plugins/paraview/mimetra/filters/time_steps.h"
 #include "toolkit/mesh/errors.h"
@@ -89,9 +86,9 @@ constexpr double kReading = 0.3;
 vtkMimetraFilter::vtkMimetraFilter(const char* operation, Takes takes)
     : vtkMimetraAlgorithm(std::make_unique<OperationCall>(operation)),
       takes_(takes),
-      exchange_(std::make_unique<PieceExchange>([this](int port, std::optional<double> time) {
-        return Incoming{input_at(port, time), times_of(*GetInputInformation(port, 0))};
-      })),
+      exchange_(std::make_unique<PieceExchange>(
+          [this](int port, std::optional<double> time) { return input_at(port, time); },
+          [this](int port) { return times_of(*GetInputInformation(port, 0)); })),
       steps_(std::make_unique<TimeSteps>()) {
   name_inputs();
 }
@@ -258,9 +255,7 @@ void vtkMimetraFilter::compute_or_serve(vtkInformationVector** inputs,
     compute_and_show(time, outputs);
   });
   failed_at_ = attempted == Attempt::failed ? now : 0;
-  attempt([&] {
-    if (!exchange_->end(attempted, *outputs)) throw std::bad_alloc();
-  });
+  attempt([&] { exchange_->end(attempted, *outputs); });
 }
 
 void vtkMimetraFilter::collect(vtkInformation& in, std::optional<double> shown) {
@@ -268,51 +263,15 @@ void vtkMimetraFilter::collect(vtkInformation& in, std::optional<double> shown) 
   const Origin origin = origin_of(0);
   if (all && collected_ == origin) return;
   collected_.reset();
-  exchange_->forget(0);
   if (all) refuse_continuous(in);
   steps_->begin(all ? times_of(in) : std::vector<double>(), call().looks_at_fields(input_));
   while (!steps_->complete()) {
-    steps_->add(exchange_->input_at(0, all ? steps_->next_time() : shown));
+    steps_->add(exchange_->input_at(0, "the mesh", all ? steps_->next_time() : shown));
     if (!show_progress(kReading * steps_->share())) throw Cancelled();
   }
   call().give(input_, {input_, steps_->taken()});
   for (const std::string& note : steps_->notes()) vtkWarningMacro(<< input_ << ": " << note);
   collected_ = origin;
-}
-
-void vtkMimetraFilter::expect_order() {
-  bool ordered = true;
-  for (int port = 0; port < GetNumberOfInputPorts(); ++port) {
-    ordered = ordered && exchange_->is_ordered(port);
-  }
-  const auto what = ordered ? std::nullopt : call().told_by_numbers();
-  if (!what) return;
-  throw UsageError(
-      "'" + *what + "' goes by the numbers of points, which say nothing while " +
-      std::to_string(exchange_->processes()) +
-      " processes hold pieces of the mesh without global ids 0, 1, 2, ... of its points; " +
-      kNumberThem);
-}
-
-void vtkMimetraFilter::tell_of_seams() {
-  std::size_t joined = 0;
-  for (int port = 0; port < GetNumberOfInputPorts(); ++port) joined += exchange_->joined(port);
-  if (joined == 0) return;
-  const std::string found = std::to_string(joined) +
-                            " points at the borders of pieces without global ids are at one "
-                            "position with another piece's";
-  if (call().keeps_vertices_apart()) {
-    throw UsageError(found +
-                     ", and whether 'Weld' none keeps them apart or they are one point "
-                     "cannot be known; " +
-                     kNumberThem);
-  }
-  if (told_of_ == origin_of(0)) return;
-  told_of_ = origin_of(0);
-  vtkWarningMacro(<< found
-                  << ", and were joined; seams of the mesh itself along these borders are "
-                     "closed, too. To keep them, "
-                  << kNumberThem);
 }
 
 void vtkMimetraFilter::tell_of_lost_arrays(vtkPolyData& input, vtkInformationVector& outputs) {
@@ -339,11 +298,9 @@ void vtkMimetraFilter::tell_of_lost_arrays(vtkPolyData& input, vtkInformationVec
 }
 
 void vtkMimetraFilter::compute_and_show(std::optional<double> time, vtkInformationVector* outputs) {
-  expect_order();
-  tell_of_seams();
   const Outcome& computed = outcome(kReading);
   // Other filters that share the input may have left it at another time.
-  vtkPolyData& mesh = mesh_of(exchange_->input_at(0, time));
+  vtkPolyData& mesh = mesh_of(exchange_->input_at(0, "the mesh", time));
   steps_->expect_counts_of(mesh, time);
   const vtkMTimeType now = changed_at(GetExecutive());
   const std::array cells = {mesh.GetNumberOfVerts(), mesh.GetNumberOfLines(),
@@ -391,7 +348,6 @@ void vtkMimetraFilter::give_meshes(vtkInformationVector** inputs) {
     if (each.given == origin) continue;
     each.given.reset();
     each.mesh = nullptr;
-    exchange_->forget(port);
     if (origin == Origin()) {
       call().take_back(each.input);
     } else {
@@ -399,7 +355,7 @@ void vtkMimetraFilter::give_meshes(vtkInformationVector** inputs) {
       const std::string name = "the " + each.input;
       const auto first = first_time_of(*inputs[port]->GetInformationObject(0));
       each.mesh = vtkSmartPointer<vtkPolyData>::New();
-      each.mesh->ShallowCopy(&mesh_of(exchange_->input_at(port, first)));
+      each.mesh->ShallowCopy(&mesh_of(exchange_->input_at(port, name, first)));
       call().give(each.input, {name, model_of(*each.mesh, name)});
     }
     each.given = origin;

@@ -100,12 +100,6 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   std::vector<Asked> asked();
   /// Forgets earlier inputs.
   void forget_inputs();
-  /// Throws UsageError if the operation refers to points by their numbers while the mesh is in
-  /// pieces without global ids 0, 1, 2, ...
-  void expect_order();
-  /// Warns, once for an input, if points without global ids were joined by their positions. Throws
-  /// UsageError if the operation keeps vertices at one position apart.
-  void tell_of_seams();
   /// Warns of input arrays that the first output does not pass on, once for the same arrays.
   void tell_of_lost_arrays(vtkPolyData& input, vtkInformationVector& outputs);
   /// Computes for all on the first process; the others follow its orders.
@@ -125,7 +119,6 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   std::optional<Times> times_;  ///< of the first process's input; set on the others only
   std::unique_ptr<TimeSteps> steps_;
   std::optional<Origin> collected_;
-  std::optional<Origin> told_of_;  ///< the input whose seams were joined
   std::set<std::string> told_lost_;
   vtkMTimeType failed_at_ = 0;
   vtkMTimeType prepared_at_ = 0;

@@ -11,7 +11,7 @@
 
 #include "plugins/paraview/mimetra/filters/host_output.h"
 #include "plugins/paraview/mimetra/filters/operation_call.h"
-#include "plugins/paraview/mimetra/filters/parcel.h"
+#include "plugins/paraview/mimetra/filters/processes.h"
 #include "plugins/paraview/mimetra/filters/reading.h"
 #include "plugins/paraview/mimetra/filters/time_steps.h"
 #include "toolkit/mesh/errors.h"
