@@ -306,7 +306,6 @@ TEST(JoinedPieces, GiveEachPieceItsPartOfAnOutput) {
       EXPECT_EQ(part->GetPoint(i)[0], pieces[p]->GetPoint(i)[0]);
     }
     if (part->GetNumberOfPoints() == 0) continue;
-    narrow_global_ids(*part);
     auto* ids = vtkIdTypeArray::SafeDownCast(part->GetPointData()->GetGlobalIds());
     ASSERT_TRUE(ids);
     EXPECT_EQ(ids->GetValue(0),

@@ -200,22 +200,6 @@ void set_places(vtkIdList& places, vtkDataSetAttributes& piece, const Ids& ids) 
   }
 }
 
-/// Makes arrays of one integer type those of another; for global ids only, if asked.
-void retype(vtkPolyData& mesh, int from, int to, bool global_only) {
-  for (const int where : kPointsAndCells) {
-    vtkDataSetAttributes& data = *mesh.GetAttributes(where);
-    for (int i = 0; i < data.GetNumberOfArrays(); ++i) {
-      vtkDataArray* old = data.GetArray(i);
-      if (!old || !old->GetName() || old->GetDataType() != from) continue;
-      if (global_only && old != data.GetGlobalIds()) continue;
-      vtkSmartPointer<vtkDataArray> retyped;
-      retyped.TakeReference(vtkDataArray::CreateDataArray(to));
-      retyped->DeepCopy(old);
-      data.AddArray(retyped);
-    }
-  }
-}
-
 }  // namespace
 
 JoinedPieces joined(Pieces pieces, const std::string& name) {
@@ -234,7 +218,6 @@ JoinedPieces joined(Pieces pieces, const std::string& name) {
     expect_joinable(*pieces[i], "process " + std::to_string(i), name);
     vtkNew<vtkPolyData> piece;
     piece->ShallowCopy(pieces[i]);
-    widen_ids(*piece);
     piece->AllocatePointGhostArray();
     piece->AllocateCellGhostArray();
     append->AddInputData(piece);
@@ -273,12 +256,4 @@ vtkSmartPointer<vtkPolyData> part_of(vtkPolyData& output, const JoinedPieces& jo
   }
   part->GetFieldData()->ShallowCopy(output.GetFieldData());
   return part;
-}
-
-void widen_ids(vtkPolyData& mesh) {
-  retype(mesh, VTK_ID_TYPE, VTK_LONG, false);
-}
-
-void narrow_global_ids(vtkPolyData& mesh) {
-  retype(mesh, VTK_LONG, VTK_ID_TYPE, true);
 }

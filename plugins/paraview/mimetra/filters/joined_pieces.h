@@ -40,8 +40,3 @@ bool lies_on(vtkPolyData& output, vtkPolyData& mesh);
 /// \pre `output` lies on the joined mesh.
 vtkSmartPointer<vtkPolyData> part_of(vtkPolyData& output, const JoinedPieces& joined,
                                      std::size_t piece);
-
-/// Makes 64-bit integers of ids among point and cell data: VTK sends ids as 32 bits.
-void widen_ids(vtkPolyData& mesh);
-/// Makes ids of global ids that widen_ids() changed: VTK's filters expect them.
-void narrow_global_ids(vtkPolyData& mesh);

@@ -1,11 +1,13 @@
 #include "plugins/paraview/mimetra/filters/piece_exchange.h"
 
+#include <algorithm>
 #include <exception>
 #include <new>
 #include <stdexcept>
 #include <utility>
 
 #include <vtkDataSet.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkInformation.h>
 #include <vtkInformationDoubleKey.h>
 #include <vtkInformationVector.h>
@@ -24,9 +26,8 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 namespace {
 
-int number_of(auto value) {
-  return static_cast<int>(value);
-}
+/// Order of the first process to the others, in place of a port whose pieces it gathers.
+constexpr int kEnd = -1;
 
 int taken_number(vtkMultiProcessStream& words) {
   int number = 0;
@@ -55,11 +56,17 @@ void set_time(vtkDataObject& data, const std::vector<double>& time) {
   if (!time.empty()) about.Set(vtkDataObject::DATA_TIME_STEP(), time.front());
 }
 
-void narrow_ids_of(vtkDataObject* output) {
-  if (auto* mesh = vtkPolyData::SafeDownCast(output)) narrow_global_ids(*mesh);
-  auto* blocks = vtkMultiBlockDataSet::SafeDownCast(output);
-  for (unsigned i = 0; blocks && i < blocks->GetNumberOfBlocks(); ++i) {
-    narrow_ids_of(blocks->GetBlock(i));
+/// Throws MismatchError for ids beyond the 32 bits that VTK sends.
+void expect_small_ids(vtkPolyData& mesh) {
+  for (const int where : {vtkDataObject::POINT, vtkDataObject::CELL}) {
+    vtkDataSetAttributes& data = *mesh.GetAttributes(where);
+    for (int i = 0; i < data.GetNumberOfArrays(); ++i) {
+      vtkDataArray* ids = data.GetArray(i);
+      if (!ids || ids->GetDataType() != VTK_ID_TYPE) continue;
+      if (std::max(-ids->GetRange()[0], ids->GetRange()[1]) <= VTK_INT_MAX) continue;
+      throw MismatchError("the ids " + std::string(ids->GetName() ? ids->GetName() : "") +
+                          " exceed 2147483647; apply Generate Global Ids, or remove them");
+    }
   }
 }
 
@@ -70,7 +77,6 @@ void take_parts(vtkDataObject& parts, vtkMultiProcessStream& times, vtkInformati
     vtkDataObject& output = *vtkDataObject::GetData(&outputs, port);
     vtkDataObject* part = blocks.GetBlock(static_cast<unsigned>(port));
     if (part && part != &output) output.ShallowCopy(part);
-    narrow_ids_of(&output);
     set_time(output, taken_times(times));
   }
 }
@@ -89,9 +95,6 @@ void empty_outputs(vtkInformationVector& outputs) {
   }
 }
 
-/// Order of the first process to the others.
-enum class PieceExchange::Order { gather, end };
-
 /// Piece of a process, or the problem with it.
 struct PieceExchange::Piece {
   vtkSmartPointer<vtkPolyData> mesh = {};
@@ -102,32 +105,27 @@ struct PieceExchange::Piece {
 bool PieceExchange::begin(vtkInformation& output) {
   const bool was_in_pieces = in_pieces();
   processes_.reset();
-  const int pieces = output.Has(Pipeline::UPDATE_NUMBER_OF_PIECES())
-                         ? output.Get(Pipeline::UPDATE_NUMBER_OF_PIECES())
-                         : 1;
+  const int pieces = output.Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
   if (pieces <= 1) return was_in_pieces;
   vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
   const bool shared =
       controller && controller->GetNumberOfProcesses() == pieces &&
       output.Get(Pipeline::UPDATE_PIECE_NUMBER()) == controller->GetLocalProcessId();
   if (!shared) {
-    throw std::invalid_argument(
-        "expected a piece of the mesh on each process, found one of " + std::to_string(pieces) +
-        " pieces on " + std::to_string(controller ? controller->GetNumberOfProcesses() : 1) +
-        " processes; ask for the whole mesh");
+    throw std::invalid_argument("expected a piece of the mesh on each process, found one of " +
+                                std::to_string(pieces) + " pieces; ask for the whole mesh");
   }
   processes_.emplace(*controller);
   return !was_in_pieces;
 }
 
-std::vector<PieceExchange::Piece> PieceExchange::gather(vtkMultiProcessStream order) {
-  const int port = taken_number(order);
+std::vector<PieceExchange::Piece> PieceExchange::gather(int port, vtkMultiProcessStream order) {
   const std::vector<double> time = taken_times(order), steps = taken_times(order);
   Piece own{vtkSmartPointer<vtkPolyData>::New()};
   try {
     vtkDataObject* data = input_(port, time.empty() ? std::nullopt : std::optional(time[0]));
     if (!is_nothing(data)) own.mesh->ShallowCopy(&mesh_of(data));
-    if (!processes_->is_first()) widen_ids(*own.mesh);
+    if (!processes_->is_first()) expect_small_ids(*own.mesh);
     if (data) own.shown = time_of(*data);
     if (own.mesh->GetNumberOfPoints() > 0 && steps_(port) != steps) {
       own.problem = "its time steps are not those of process 0; give all the same times";
@@ -160,11 +158,12 @@ vtkDataObject* PieceExchange::input_at(int port, const std::string& name,
   order << port;
   put_times(order, time ? std::vector{*time} : std::vector<double>());
   put_times(order, steps_(port));
-  command(Order::gather);
+  order = processes_->told(order);
+  taken_number(order);
   Pieces pieces;
   std::vector<double> shown;
   std::size_t process = 0;
-  for (const Piece& piece : gather(processes_->told(order))) {
+  for (const Piece& piece : gather(port, order)) {
     const std::string who = "process " + std::to_string(process++);
     if (!piece.problem.empty()) throw MismatchError(who + ": " + piece.problem);
     pieces.push_back(piece.mesh);
@@ -196,44 +195,38 @@ void PieceExchange::end(Attempt how, vtkInformationVector& outputs) {
     how = Attempt::failed;
   }
   // The others wait for this order, even after a failure.
-  command(Order::end);
-  finish(how, parts, outputs);
+  vtkMultiProcessStream order;
+  order << kEnd << static_cast<int>(how);
+  for (int port = 0; port < outputs.GetNumberOfInformationObjects(); ++port) {
+    put_times(order, time_of(*vtkDataObject::GetData(&outputs, port)));
+  }
+  order = processes_->told(order);
+  taken_number(order);
+  finish(order, parts, outputs);
   if (failure) std::rethrow_exception(failure);
-}
-
-void PieceExchange::command(Order order) {
-  vtkMultiProcessStream words;
-  words << number_of(order);
-  processes_->told(words);
 }
 
 Attempt PieceExchange::serve(vtkInformationVector& outputs) {
   const Processes::Data nothing(static_cast<std::size_t>(processes_->count()));
   for (;;) {
     vtkMultiProcessStream order = processes_->told({});
-    const bool ends = taken_number(order) == number_of(Order::end);
+    const int port = taken_number(order);
     try {
-      if (ends) return finish(Attempt::done, nothing, outputs);
-      gather(processes_->told({}));
+      if (port == kEnd) return finish(order, nothing, outputs);
+      gather(port, order);
     } catch (const std::bad_alloc&) {
-      if (ends) return Attempt::failed;  // the first process reports this for all
+      if (port == kEnd) return Attempt::failed;  // the first process reports this for all
     }
   }
 }
 
-Attempt PieceExchange::finish(Attempt how, const Processes::Data& parts,
+Attempt PieceExchange::finish(vtkMultiProcessStream order, const Processes::Data& parts,
                               vtkInformationVector& outputs) {
-  vtkMultiProcessStream words;
-  words << number_of(how);
-  for (int port = 0; port < outputs.GetNumberOfInformationObjects(); ++port) {
-    put_times(words, time_of(*vtkDataObject::GetData(&outputs, port)));
-  }
-  words = processes_->told(words);
-  how = static_cast<Attempt>(taken_number(words));
+  const auto how = static_cast<Attempt>(taken_number(order));
   try {
     if (how == Attempt::done) {
       const Processes::Data own = processes_->exchanged(parts);
-      processes_->together([&] { take_parts(*own.front(), words, outputs); });
+      processes_->together([&] { take_parts(*own.front(), order, outputs); });
       return how;
     }
   } catch (const std::bad_alloc&) {

@@ -56,16 +56,14 @@ class PieceExchange {
   Attempt serve(vtkInformationVector& outputs);
 
  private:
-  enum class Order;
   struct Piece;
 
-  /// On the first process: tells the others what to do next.
-  void command(Order order);
-  /// Collective. Gathers the pieces at a port on the first process.
-  std::vector<Piece> gather(vtkMultiProcessStream order);
+  /// Collective. Gathers the pieces at a port on the first process, at the time of the order.
+  std::vector<Piece> gather(int port, vtkMultiProcessStream order);
   /// Collective. Gives each process its parts of the outputs, or empties them if the first process
-  /// has not done its work. Returns what that process passes. Throws std::bad_alloc on all.
-  Attempt finish(Attempt how, const Processes::Data& parts, vtkInformationVector& outputs);
+  /// has not done its work. Returns what that process orders. Throws std::bad_alloc on all.
+  Attempt finish(vtkMultiProcessStream order, const Processes::Data& parts,
+                 vtkInformationVector& outputs);
   /// Part of an output for a process; null for a table.
   vtkSmartPointer<vtkDataObject> part_for(std::size_t process, vtkDataObject* output) const;
 

@@ -31,7 +31,7 @@ class Processes {
   /// Collective. Returns the words of all processes on the first one, and none on the others.
   std::vector<vtkMultiProcessStream> gathered(const vtkMultiProcessStream& words);
   /// Collective. Sends data to each process, and returns those from each; null for no data. Throws
-  /// std::bad_alloc on all processes if one lacks memory. VTK's format cuts vtkIdType to 32 bits.
+  /// std::bad_alloc on all processes if one lacks memory. VTK's format cuts ids to 32 bits.
   Data exchanged(const Data& mine);
 
  private:
