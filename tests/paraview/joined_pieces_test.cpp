@@ -200,6 +200,24 @@ TEST(JoinedPieces, AreRefusedWithoutGlobalIds) {
   EXPECT_EQ(refusal(pieces), expected);
 }
 
+TEST(JoinedPieces, AreRefusedIfTheirIdsHaveOtherTypes) {
+  Pieces pieces = halves();
+  vtkNew<vtkDoubleArray> ids;
+  ids->DeepCopy(pieces[1]->GetPointData()->GetGlobalIds());
+  pieces[1]->GetPointData()->SetGlobalIds(ids);
+  EXPECT_THAT(refusal(pieces), HasSubstr("apply the filter Generate Global Ids"));
+}
+
+TEST(JoinedPieces, MayBePointsWithoutCells) {
+  Pieces pieces = halves();
+  for (const auto& piece : pieces) {
+    piece->SetPolys(vtkNew<vtkCellArray>());
+    piece->SetLines(vtkNew<vtkCellArray>());
+    piece->GetCellData()->Initialize();
+  }
+  EXPECT_EQ(joined(pieces, "").mesh->GetNumberOfPoints(), kPoints);
+}
+
 TEST(JoinedPieces, KeepPointsAtOnePositionApartIfTheirIdsDiffer) {
   Pieces pieces = halves();
   auto& ids = *vtkIdTypeArray::SafeDownCast(pieces[1]->GetPointData()->GetGlobalIds());

@@ -72,15 +72,13 @@ struct Ids {
   std::unordered_map<vtkTypeInt64, vtkIdType> places;
 };
 
-/// Marks of ghosts, which are the points or cells of other pieces.
+/// Returns which points or cells are ghosts, those of other pieces.
 std::vector<bool> ghosts_of(vtkPolyData& all, int where) {
-  const unsigned char mark = where == vtkDataObject::POINT
-                                 ? static_cast<unsigned char>(vtkDataSetAttributes::DUPLICATEPOINT)
-                                 : static_cast<unsigned char>(vtkDataSetAttributes::DUPLICATECELL);
-  auto* marks = vtkUnsignedCharArray::SafeDownCast(all.GetGhostArray(where));
+  constexpr int mark = vtkDataSetAttributes::DUPLICATEPOINT;
+  static_assert(mark == int{vtkDataSetAttributes::DUPLICATECELL});
   std::vector<bool> ghosts;
   for (vtkIdType i = 0; i < all.GetNumberOfElements(where); ++i) {
-    ghosts.push_back((marks->GetValue(i) & mark) != 0);
+    ghosts.push_back((all.GetGhostArray(where)->GetValue(i) & mark) != 0);
   }
   return ghosts;
 }
@@ -224,6 +222,7 @@ JoinedPieces joined(Pieces pieces, const std::string& name) {
   }
   append->Update();
   vtkPolyData& all = *append->GetOutput();
+  expect_joinable(all, "some process", name);  // ids of one type
   Ids points(*all.GetPointData()), cells(*all.GetCellData());
   joined.mesh = vtkSmartPointer<vtkPolyData>::New();
   join_points(*joined.mesh, all, pieces, points);

@@ -43,11 +43,14 @@ bool is_nothing(vtkDataObject* data) {
          (set && set->GetNumberOfPoints() == 0 && set->GetNumberOfCells() == 0);
 }
 
-/// Time of data: none or one.
+/// Time under a key: none or one.
+std::vector<double> time_in(vtkInformation& info, vtkInformationDoubleKey* key) {
+  if (!info.Has(key)) return {};
+  return {info.Get(key)};
+}
+
 std::vector<double> time_of(vtkDataObject& data) {
-  vtkInformation& about = *data.GetInformation();
-  if (!about.Has(vtkDataObject::DATA_TIME_STEP())) return {};
-  return {about.Get(vtkDataObject::DATA_TIME_STEP())};
+  return time_in(*data.GetInformation(), vtkDataObject::DATA_TIME_STEP());
 }
 
 void set_time(vtkDataObject& data, const std::vector<double>& time) {
@@ -85,13 +88,10 @@ void take_parts(vtkDataObject& parts, vtkMultiProcessStream& times, vtkInformati
 
 void empty_outputs(vtkInformationVector& outputs) {
   for (int port = 0; port < outputs.GetNumberOfInformationObjects(); ++port) {
-    vtkInformation& asked = *outputs.GetInformationObject(port);
     vtkDataObject* output = vtkDataObject::GetData(&outputs, port);
     if (!output) continue;
     output->Initialize();
-    const bool is_asked = asked.Has(Pipeline::UPDATE_TIME_STEP()) != 0;
-    set_time(*output, is_asked ? std::vector{asked.Get(Pipeline::UPDATE_TIME_STEP())}
-                               : std::vector<double>());
+    set_time(*output, time_in(*outputs.GetInformationObject(port), Pipeline::UPDATE_TIME_STEP()));
   }
 }
 
