@@ -36,7 +36,7 @@ int taken_number(vtkMultiProcessStream& words) {
 }
 
 /// Returns whether data are empty, whatever their type. Sources that have data on the first process
-/// only leave an object of no particular kind elsewhere.
+/// only leave an object of no particular kind on the others.
 bool is_nothing(vtkDataObject* data) {
   auto* set = vtkDataSet::SafeDownCast(data);
   return !data || data->GetDataObjectType() == VTK_DATA_OBJECT ||
@@ -124,8 +124,8 @@ std::vector<PieceExchange::Piece> PieceExchange::gather(int port, vtkMultiProces
   Piece own{vtkSmartPointer<vtkPolyData>::New()};
   try {
     vtkDataObject* data = input_(port, time.empty() ? std::nullopt : std::optional(time[0]));
-    if (!is_nothing(data)) own.mesh->ShallowCopy(&mesh_of(data));
-    if (!processes_->is_first()) expect_small_ids(*own.mesh);
+    if (is_first() || !is_nothing(data)) own.mesh->ShallowCopy(&mesh_of(data));
+    if (!is_first()) expect_small_ids(*own.mesh);
     if (data) own.shown = time_of(*data);
     if (own.mesh->GetNumberOfPoints() > 0 && steps_(port) != steps) {
       own.problem = "its time steps are not those of process 0; give all the same times";
@@ -139,7 +139,7 @@ std::vector<PieceExchange::Piece> PieceExchange::gather(int port, vtkMultiProces
   words << own.problem;
   put_times(words, own.shown);
   std::vector<vtkMultiProcessStream> all_words = processes_->gathered(words);
-  Processes::Data sent(static_cast<std::size_t>(processes_->count()));
+  Processes::Data sent = processes_->nothing();
   sent.front() = own.mesh;
   const Processes::Data meshes = processes_->exchanged(sent);
   std::vector<Piece> pieces(all_words.size());
@@ -180,7 +180,7 @@ vtkDataObject* PieceExchange::input_at(int port, const std::string& name,
 
 void PieceExchange::end(Attempt how, vtkInformationVector& outputs) {
   if (!processes_) return;
-  Processes::Data parts(static_cast<std::size_t>(processes_->count()));
+  Processes::Data parts = processes_->nothing();
   std::exception_ptr failure;
   try {
     vtkNew<vtkMultiBlockDataSet> all;  // without tables
@@ -207,12 +207,11 @@ void PieceExchange::end(Attempt how, vtkInformationVector& outputs) {
 }
 
 Attempt PieceExchange::serve(vtkInformationVector& outputs) {
-  const Processes::Data nothing(static_cast<std::size_t>(processes_->count()));
   for (;;) {
     vtkMultiProcessStream order = processes_->told({});
     const int port = taken_number(order);
     try {
-      if (port == kEnd) return finish(order, nothing, outputs);
+      if (port == kEnd) return finish(order, processes_->nothing(), outputs);
       gather(port, order);
     } catch (const std::bad_alloc&) {
       if (port == kEnd) return Attempt::failed;  // the first process reports this for all

@@ -44,9 +44,9 @@ class PieceExchange {
     return processes_ ? processes_->told(words) : words;
   }
 
-  /// On the first process: input at a port, joined from the pieces of all processes. Throws what
-  /// joined() throws, and MismatchError for pieces of different times. Throws std::invalid_argument
-  /// if a piece is not a mesh, and IoError if a process cannot read its piece.
+  /// On the first process: the input `name` at a port, joined from the pieces of all processes.
+  /// Throws what joined() throws, and MismatchError for pieces of different times, or if a process
+  /// cannot read its piece.
   vtkDataObject* input_at(int port, const std::string& name, std::optional<double> time);
 
   /// On the first process: gives the others their pieces of the outputs, and keeps its own. The

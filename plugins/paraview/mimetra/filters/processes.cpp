@@ -27,12 +27,12 @@ std::vector<double> taken_times(vtkMultiProcessStream& words) {
   return times;
 }
 
-int Processes::count() const {
-  return controller_->GetNumberOfProcesses();
-}
-
 bool Processes::is_first() const {
   return controller_->GetLocalProcessId() == kFirst;
+}
+
+Processes::Data Processes::nothing() const {
+  return Data(static_cast<std::size_t>(controller_->GetNumberOfProcesses()));
 }
 
 bool Processes::all(bool mine) {

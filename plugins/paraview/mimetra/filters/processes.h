@@ -20,8 +20,9 @@ class Processes {
 
   explicit Processes(vtkMultiProcessController& controller) : controller_(&controller) {}
 
-  int count() const;
   bool is_first() const;
+  /// Returns data for each process: null.
+  Data nothing() const;
   /// Collective. Returns whether `mine` is true on all processes.
   bool all(bool mine);
   /// Collective. Throws std::bad_alloc on all processes if `work` throws it on one.
