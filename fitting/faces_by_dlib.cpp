@@ -192,14 +192,12 @@ Detections found_near(const Image& image, const Face& last, Detector& one_level)
       static_cast<int>(std::max(std::lround(std::log(last.width / kWindow) / std::log(kStep)), 0L));
   // Half of the face, the same distance again for its motion, and the edge.
   const double half = last.width + kEdge * std::pow(kStep, middle + 1);
-  const double cell = kCell * std::pow(kStep, middle);
-  const auto begin = [half, cell](double center, int size) {
-    const double first_cell = std::floor(std::clamp(center - half, 0.0, size - 1.0) / cell);
-    return static_cast<int>(std::lround(first_cell * cell));
+  const auto begin = [half](double center, int size) {
+    return static_cast<int>(std::clamp(center - half, 0.0, size - 1.0));
   };
   const int left = begin(last.left + last.width / 2, image.width);
   const int top = begin(last.top + last.height / 2, image.height);
-  const int side = static_cast<int>(2 * half + cell) + 1;
+  const int side = static_cast<int>(2 * half) + 1;
   dlib::array2d<dlib::rgb_pixel> pixels, smaller;
   dlib::assign_image(pixels, cropped(image, left, top, side, side));
   Detections found;
@@ -207,7 +205,7 @@ Detections found_near(const Image& image, const Face& last, Detector& one_level)
     if (level >= middle - 1) {
       const auto to_cell = [&](int place) {
         const double in_level = place * std::pow(kStep, -level);
-        return std::max(std::lround(std::ceil((in_level - 1) / kCell) * kCell - in_level), 0L);
+        return std::lround(std::ceil(in_level / kCell) * kCell - in_level);
       };
       const long x = to_cell(left), y = to_cell(top);
       const dlib::rectangle all(x, y, pixels.nc() - 1, pixels.nr() - 1);

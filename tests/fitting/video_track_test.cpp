@@ -58,20 +58,16 @@ std::vector<Image> talking_head(int frames, int width = 480, int height = 360) {
   return images;
 }
 
-/// Mean distance of landmarks in the frames that both have.
+/// Median of the mean distance of landmarks over the frames that both have.
 double landmark_distance(const LandmarkTrack& a, const LandmarkTrack& b) {
-  double sum = 0;
-  int count = 0;
+  std::vector<double> means;
   for (Eigen::Index f = 0; f < a.points.rows(); ++f) {
-    for (Eigen::Index i = 0; i < a.points.cols(); i += 2) {
-      const double distance =
-          (a.points.row(f).segment<2>(i) - b.points.row(f).segment<2>(i)).norm();
-      if (std::isnan(distance)) continue;
-      sum += distance;
-      ++count;
-    }
+    const Eigen::RowVectorXd between = a.points.row(f) - b.points.row(f);
+    const double mean = between.reshaped(2, between.size() / 2).colwise().norm().mean();
+    if (!std::isnan(mean)) means.push_back(mean);
   }
-  return sum / count;
+  std::ranges::nth_element(means, means.begin() + std::ssize(means) / 2);
+  return means.at(means.size() / 2);
 }
 
 /// Frames without landmarks have NaN, which is not equal to itself.
