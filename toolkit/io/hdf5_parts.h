@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "toolkit/io/hdf5_fields.h"
+#include "toolkit/io/hdf5_bytes.h"
 
 /// Parts that HDF5 files consist of, and the trees and heaps that connect them. Internal to the
 /// readers of HDF5.

@@ -15,7 +15,7 @@
 #include "toolkit/model/blendshape_model.h"
 
 /// Shared parts of sequence formats: files beside a sequence, sequences with one mesh file a frame,
-/// and models driven by weights. Internal to the code that opens and writes sequences.
+/// and models driven by weights. For code that opens and writes sequences.
 namespace mimetra {
 
 /// Seconds of a sequence's frames (F), and whether a file or the user gave them.

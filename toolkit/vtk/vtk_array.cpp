@@ -12,6 +12,7 @@
 #include <vtkDataArray.h>
 #include <vtkLZ4DataCompressor.h>
 #include <vtkLZMADataCompressor.h>
+#include <vtkSmartPointer.h>
 #include <vtkType.h>
 #include <vtkZLibDataCompressor.h>
 

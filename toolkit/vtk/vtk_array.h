@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include <vtkSmartPointer.h>
-
 class vtkDataArray;
+template <typename>
+class vtkSmartPointer;
 
 /// Arrays in VTK's files: numbers as text, bytes, or base64, whole or in compressed blocks.
 /// Internal to the readers and writers.

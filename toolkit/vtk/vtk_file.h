@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include <vtkSmartPointer.h>
-
 #include "toolkit/mesh/fields.h"
 #include "toolkit/vtk/vtk_layout.h"
 
 class vtkPolyData;
+template <typename>
+class vtkSmartPointer;
 
 namespace mimetra {
 
