@@ -76,7 +76,25 @@ TEST_F(VtpHostile, CountsBeyondTheFileAreRefusedBeforeMemoryIsAskedFor) {
   EXPECT_THAT(refusal_with("Name=\"roi\"", "NumberOfComponents=\"99999\" Name=\"roi\""),
               HasSubstr("NumberOfComponents"));
   EXPECT_THAT(refusal_with("NumberOfComponents=\"3\"", "NumberOfComponents=\"2\""),
-              HasSubstr("tuples"));
+              HasSubstr("expected a multiple of 8"));
+}
+
+TEST_F(VtpHostile, PointsWithoutAnArrayAreRefused) {
+  const std::string points =
+      "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" "
+      "format=\"ascii\">0 0 0 1 0 0 0 1 0</DataArray></Points>";
+  EXPECT_THAT(refusal_with(points, "<Points/>"), HasSubstr("Points: expected an array"));
+}
+
+/// The file ends behind the first byte of a value.
+TEST_F(VtpHostile, AShortArrayAtTheEndOfTheFileIsRefused) {
+  std::string text = triangle_;
+  const std::string ascii = "Name=\"roi\" format=\"ascii\">0 1 1";
+  text.replace(text.find(ascii), ascii.size(), "Name=\"roi\" format=\"appended\" offset=\"0\">");
+  text.insert(text.find("</VTKFile>"), "<AppendedData encoding=\"raw\">_");
+  text.resize(text.find("</VTKFile>"));
+  text.append("\1\0\0\0\1", 5);
+  EXPECT_THAT(refusal_of("a.vtp", text), HasSubstr("array 'roi': holds 1 bytes"));
 }
 
 TEST_F(VtpHostile, BlocksThatAreLargerThanTheFileAreRefused) {

@@ -294,12 +294,14 @@ std::uint64_t find_end(VtkArray& array, const VtkStorage& storage, const ArrayFa
     if (size.size() < storage.word) fail("is truncated");
     bytes = word_at(size, 0, storage);
     if (bytes > left) fail("the sizes of its blocks cannot be true");
-    // The size is a base64 text of its own if it ends in padding.
-    const std::uint64_t before = base64_characters(storage.word);
-    const bool is_padded = array.stored[before - 1] == '=';
-    end = array.form == Form::raw ? storage.word + bytes
-          : is_padded             ? before + base64_characters(bytes)
-                                  : base64_characters(storage.word + bytes);
+    if (array.form == Form::raw) {
+      end = storage.word + bytes;
+    } else {
+      // The size is a base64 text of its own if it ends in padding.
+      const std::uint64_t before = base64_characters(storage.word);
+      end = array.stored[before - 1] == '=' ? before + base64_characters(bytes)
+                                            : base64_characters(storage.word + bytes);
+    }
   } else {
     const Blocks blocks = blocks_of(array, storage, fail);
     std::uint64_t packed = 0;
@@ -323,7 +325,8 @@ vtkSmartPointer<vtkDataArray> decoded(const VtkArray& array, const VtkStorage& s
   }
   const std::size_t tuple = type.bytes * static_cast<std::size_t>(array.components);
   if (bytes.size() % tuple != 0 && array.type != "Bit") {
-    fail("holds " + std::to_string(bytes.size()) + " bytes, which are no whole number of tuples");
+    fail("holds " + std::to_string(bytes.size()) + " bytes, expected a multiple of " +
+         std::to_string(tuple));
   }
   auto values = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type.vtk));
   values->SetName(array.name.empty() ? nullptr : array.name.c_str());

@@ -44,6 +44,7 @@ class PieceReader {
   /// An array of `tuples` tuples, which belongs to `owner`, such as "PointData".
   vtkSmartPointer<vtkDataArray> array(const VtkArray& stored, std::uint64_t tuples,
                                       const std::string& owner) const {
+    if (stored.type.empty()) fail(owner + ": expected an array");
     const std::string name = owner + (stored.name.empty() ? "" : ", array '" + stored.name + "'");
     auto values =
         decoded(stored, storage_, [&](const std::string& problem) { fail(name + ": " + problem); });
