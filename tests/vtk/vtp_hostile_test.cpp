@@ -79,6 +79,14 @@ TEST_F(VtpHostile, CountsBeyondTheFileAreRefusedBeforeMemoryIsAskedFor) {
               HasSubstr("expected a multiple of 8"));
 }
 
+TEST_F(VtpHostile, CornersMayClaimToHaveComponents) {
+  std::string text = triangle_;
+  const std::string name = "Name=\"connectivity\"";
+  text.insert(text.find(name), "NumberOfComponents=\"3\" ");
+  std::ofstream(in_folder("a.vtp")) << text;
+  EXPECT_EQ(read_vtp_series(in_folder("a.vtp")).sequence().triangles().rows(), 1);
+}
+
 TEST_F(VtpHostile, PointsWithoutAnArrayAreRefused) {
   const std::string points =
       "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" "

@@ -83,8 +83,10 @@ class PieceReader {
   std::vector<int> integers(const VtkArray& stored, const std::string& owner) const {
     const std::string name = owner + ", array '" + stored.name + "'";
     if (stored.type.empty()) fail(owner + ": expected arrays 'connectivity' and 'offsets'");
+    VtkArray flat = stored;
+    flat.components = 1;  // whatever the file says
     const auto values =
-        decoded(stored, storage_, [&](const std::string& problem) { fail(name + ": " + problem); });
+        decoded(flat, storage_, [&](const std::string& problem) { fail(name + ": " + problem); });
     std::vector<int> numbers(static_cast<std::size_t>(values->GetNumberOfValues()));
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       const double number = values->GetComponent(static_cast<vtkIdType>(i), 0);

@@ -27,6 +27,8 @@ class VtkFile {
  public:
   /// Throws IoError.
   explicit VtkFile(const std::filesystem::path& path);
+  VtkFile(const VtkFile&) = delete;
+  VtkFile& operator=(const VtkFile&) = delete;
 
   const std::string& path() const { return path_; }
 

@@ -184,13 +184,13 @@ class ComparedFields {
 
   /// Decodes only those fields whose bytes differ from the first file's.
   void look_at(const VtkFile& later) {
-    const std::vector<VtkFile::StoredField> stored = later.stored_fields();
     std::set<std::string> unclear;
     for (const Field& field : steady_) {
       if (!later.stores_field_of(first_, {field.location, field.name})) unclear.insert(field.name);
     }
-    for (const VtkFile::StoredField& field : stored) {
-      if (!has(steady_, field) && !has(changing_, field)) unclear.insert(field.name);
+    for (const VtkFile::StoredField& field : later.stored_fields()) {
+      const bool is_rest = field.name == kRestPose || field.name == kPlaced;
+      if (!is_rest && !has(steady_, field) && !has(changing_, field)) unclear.insert(field.name);
     }
     if (unclear.empty()) return;
     const auto data =
