@@ -198,7 +198,7 @@ class ThirdPartyOperations(HostTest):
 
     def test_tells_of_what_fails(self):
         with Messages() as messages:
-            at(simple.mimetraSpeed(Input=simple.Sphere()))
+            at(simple.mimetraSpeed(Input=self.series_of("still", moving(1))))
         self.assertIn("speed sample: speed: one frame has no speed", messages.text)
 
 
