@@ -61,20 +61,20 @@
 #include "toolkit/transfer/vertex_transfer.h"
 
 // Files. A library that was built with MIMETRA_FILES=OFF has none.
-#if __has_include("toolkit/io/sequence_file.h")
+#if __has_include("toolkit/formats/sequence_file.h")
+#include "toolkit/formats/gltf/gltf_write.h"
+#include "toolkit/formats/hdf5/components_file.h"
+#include "toolkit/formats/hdf5/vtkhdf_file.h"
+#include "toolkit/formats/model_file.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/io/array_file.h"
-#include "toolkit/io/components_file.h"
 #include "toolkit/io/correspondence_file.h"
-#include "toolkit/io/gltf_write.h"
 #include "toolkit/io/live_link.h"
 #include "toolkit/io/marker_file.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/model_file.h"
 #include "toolkit/io/painting_file.h"
 #include "toolkit/io/regions_file.h"
 #include "toolkit/io/retargeting_file.h"
 #include "toolkit/io/rules_file.h"
-#include "toolkit/io/sequence_file.h"
-#include "toolkit/io/vtkhdf_file.h"
 #include "toolkit/io/weight_file.h"
 #endif

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "fitting/affine_camera.h"
+#include "toolkit/io/image.h"
 #include "toolkit/mesh/option.h"
-#include "toolkit/operations/image.h"
 
 namespace mimetra {
 

@@ -19,10 +19,10 @@
 #include "fitting/followed_face.h"
 #include "fitting/landmark_formats.h"
 #include "fitting/landmark_mapping.h"
+#include "toolkit/io/image.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/parallel.h"
-#include "toolkit/operations/image.h"
 
 namespace mimetra {
 

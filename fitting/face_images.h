@@ -7,10 +7,10 @@
 #include "fitting/face_finder.h"
 #include "fitting/image_files.h"
 #include "toolkit/correspondence/landmark_finder.h"
+#include "toolkit/io/image.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/model/landmark_track.h"
-#include "toolkit/operations/image.h"
 
 namespace mimetra {
 

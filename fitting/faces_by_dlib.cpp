@@ -13,8 +13,8 @@
 #include "fitting/face_finder.h"
 #include "fitting/image_files.h"
 #include "toolkit/correspondence/landmark_finder.h"
+#include "toolkit/io/image.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/operations/image.h"
 
 /// Everything that needs dlib, which sees an image as rows of its own pixels.
 namespace dlib {

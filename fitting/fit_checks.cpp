@@ -12,8 +12,8 @@
 #include "fitting/affine_camera.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/median.h"
+#include "toolkit/mesh/parameter.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/parameter.h"
 
 namespace mimetra {
 

@@ -4,8 +4,8 @@
 
 #include "fitting/fit_options.h"
 #include "fitting/landmark_mapping.h"
+#include "toolkit/io/image.h"
 #include "toolkit/model/blendshape_model.h"
-#include "toolkit/operations/image.h"
 
 /// Checks of landmarks and options before a fit. Internal to fit_operation.h.
 namespace mimetra {

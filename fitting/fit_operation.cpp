@@ -17,14 +17,14 @@
 #include "fitting/landmark_mapping.h"
 #include "fitting/overlay.h"
 #include "fitting/video_file.h"
+#include "toolkit/io/file_parameters.h"
+#include "toolkit/io/format.h"
 #include "toolkit/io/json_text.h"
+#include "toolkit/mesh/bound_parameters.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/rounding.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/bound_parameters.h"
-#include "toolkit/operations/format.h"
 #include "toolkit/operations/reports.h"
-#include "toolkit/operations/sequence_parameters.h"
 
 namespace mimetra {
 
@@ -373,10 +373,12 @@ BoundParameters<LandmarkInputOptions> landmark_parameters() {
       .add(&LandmarkInputOptions::faces, faces);
 }
 
-ReadValue read_landmark_data(const std::string& text, const ReadRequest& request,
+ReadValue read_landmark_data(const std::string& text, const ReadOptions& options,
                              const Context& context) {
-  LandmarksRead read = read_landmark_input(text, frame_parameters().read(request.parameters),
-                                           landmark_parameters().read(request.parameters), context);
+  const auto own = landmark_parameters();
+  LandmarksRead read = read_landmark_input(
+      text, options,
+      own.read(options.parameters ? *options.parameters : Parameters(own.declared())), context);
   Origin origin;
   origin.images = std::move(read.images);
   origin.frame_notes = std::move(read.frame_notes);
@@ -385,14 +387,13 @@ ReadValue read_landmark_data(const std::string& text, const ReadRequest& request
           std::move(read.notes)};
 }
 
-std::vector<std::filesystem::path> write_landmark_data(const Data& data,
-                                                       const WriteRequest& request,
-                                                       const Context&) {
-  return write_text(request, landmark_csv(std::get<LandmarkTrack>(data)));
+Format::Paths write_landmark_data(const Data& data, const std::filesystem::path& target,
+                                  const WriteOptions& options, const Context&) {
+  return write_text(target, options, landmark_csv(std::get<LandmarkTrack>(data)));
 }
 
 void add_landmark_formats(OperationTable& table) {
-  std::vector<Parameter> reading = frame_parameters().declared();
+  std::vector<Parameter> reading = reading_parameters({"frames", "fps"});
   for (Parameter& parameter : landmark_parameters().declared()) {
     reading.push_back(std::move(parameter));
   }

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "toolkit/operations/image.h"
+#include "toolkit/io/image.h"
 
 namespace mimetra {
 

@@ -12,10 +12,11 @@
 #include "fitting/video_file.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/frame_series.h"
+#include "toolkit/io/frame_times.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/parameter.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/parameter.h"
 
 namespace mimetra {
 
@@ -157,19 +158,19 @@ LandmarkTrack taken_from(LandmarkTrack track, const std::vector<int>& frames) {
 
 /// Keeps the times that frames have in the whole clip.
 void set_times(LandmarksRead& read, const std::string& text, const std::vector<int>& frames,
-               const SequenceSource& source) {
+               const ReadOptions& options) {
   LandmarkTrack& track = read.track;
-  check_rate(text, track.times, source);
+  check_rate(text, track.times, options.fps);
   if (track.times.size() > 0) {
-    const std::string odd = source.frames ? "" : note_on_steps(track.times);
+    const std::string odd = options.frames ? "" : note_on_steps(track.times);
     if (!odd.empty()) read.notes.push_back(text + ": " + odd);
     return;
   }
-  track.times_are_known = source.fps.has_value();
+  track.times_are_known = options.fps.has_value();
   track.times.resize(track.frames());
   for (int f = 0; f < track.frames(); ++f) {
     track.times[f] = frames[static_cast<std::size_t>(f)] * track.step /
-                     source.fps.value_or(kDefaultFramesPerSecond);
+                     options.fps.value_or(kDefaultFramesPerSecond);
   }
 }
 
@@ -330,13 +331,13 @@ LandmarksRead find_in_images(std::shared_ptr<const ImageSequence> images,
   return read;
 }
 
-LandmarksRead find_in_video(const std::string& text, const SequenceSource& source,
+LandmarksRead find_in_video(const std::string& text, const ReadOptions& reading,
                             const FaceOptions& options, const Context& context) {
   constexpr double kShareOfOpening = 0.2;
   const auto video = std::make_shared<const VideoFile>(text, context.part(0, kShareOfOpening));
-  check_rate(text, video->times(), source);
-  check_whole(text, *video, end_of_frames(source.frames));
-  const std::vector<int> chosen = selected_frames(source.frames, video->frames());
+  check_rate(text, video->times(), reading.fps);
+  check_whole(text, *video, end_of_frames(reading.frames));
+  const std::vector<int> chosen = selected_frames(reading.frames, video->frames());
   LandmarksRead read =
       find_in_images(selected(video, chosen), options, context.part(kShareOfOpening, 1));
   read.track.times = video->times()(chosen);
@@ -346,19 +347,19 @@ LandmarksRead find_in_video(const std::string& text, const SequenceSource& sourc
 
 }  // namespace
 
-LandmarksRead read_landmark_input(const std::string& text, const SequenceSource& source,
+LandmarksRead read_landmark_input(const std::string& text, const ReadOptions& reading,
                                   const LandmarkInputOptions& options, const Context& context) {
-  check_options(source);
+  check_options(reading);
   check_options(options.faces);
   const LandmarkFiles input = input_of(text);
   if (is_video(input.track)) {
     check_needed(text, "is a video", options);
-    return find_in_video(text, source, options.faces, context);
+    return find_in_video(text, reading, options.faces, context);
   }
   LandmarkTrack whole;
   if (input.frames.empty()) whole = read_landmarks(input.track);
   const int count = input.frames.empty() ? whole.frames() : static_cast<int>(input.frames.size());
-  const std::vector<int> selected = selected_frames(source.frames, count);
+  const std::vector<int> selected = selected_frames(reading.frames, count);
   const Paths files = taken_from(input.frames, selected);
   LandmarksRead read;
   const bool from_images = !files.empty() && is_image(files.front());
@@ -384,12 +385,12 @@ LandmarksRead read_landmark_input(const std::string& text, const SequenceSource&
     drop_doubtful(read, text, options.faces.min_confidence);
     for (const std::string& note : read.track.notes) read.notes.push_back(text + ": " + note);
     note_others(read, text, input);
-    if (!source.frames) note_missing(read, text, input.frames);
+    if (!reading.frames) note_missing(read, text, input.frames);
   }
   if (const std::string note = note_on_digits(text); !files.empty() && !note.empty()) {
     read.notes.push_back(note);
   }
-  set_times(read, text, selected, source);
+  set_times(read, text, selected, reading);
   context.report(1);
   return read;
 }

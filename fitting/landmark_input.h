@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fitting/face_images.h"
-#include "toolkit/io/sequence_format.h"
+#include "toolkit/io/format.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/model/landmark_track.h"
 
@@ -41,13 +41,13 @@ struct LandmarksRead {
 /// Reads the landmarks of a clip: a .pts, .csv or .json file, or a folder or pattern of .pts files.
 /// Images and videos are searched for faces: a video, an image, or a folder or pattern of images.
 /// Each file is a frame, in natural order. The result has times, and holds the frames that
-/// `source.frames` selects.
+/// `reading.frames` selects.
 ///
 /// Throws IoError as VideoFile and track_face() do, and if a selected frame comes after damage in a
 /// video. Throws MismatchError as selected_frames() does, and if files differ in their number of
 /// landmarks, the number of images is wrong or an option has no effect. Throws
 /// std::invalid_argument for an option out of range, and Cancelled.
-LandmarksRead read_landmark_input(const std::string& text, const SequenceSource& source = {},
+LandmarksRead read_landmark_input(const std::string& text, const ReadOptions& reading = {},
                                   const LandmarkInputOptions& = {}, const Context& = {});
 
 }  // namespace mimetra

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "toolkit/operations/image.h"
+#include "toolkit/io/image.h"
 
 /// Turns of pictures as cameras store them. Internal to image_files.h and video_file.h.
 namespace mimetra {

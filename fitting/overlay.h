@@ -7,9 +7,9 @@
 #include "fitting/image_files.h"
 #include "fitting/landmark_mapping.h"
 #include "toolkit/io/fit_file.h"
+#include "toolkit/io/image.h"
 #include "toolkit/mesh/mesh_sequence.h"
 #include "toolkit/model/blendshape_model.h"
-#include "toolkit/operations/image.h"
 
 namespace mimetra {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "toolkit/operations/image.h"
+#include "toolkit/io/image.h"
 
 /// Decoding and encoding of videos, with FFmpeg's libraries if available. Internal to video_file.h.
 namespace mimetra {

@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "fitting/video_codec.h"
+#include "toolkit/io/format.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/frame_source.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/format.h"
 
 namespace mimetra {
 
@@ -135,7 +135,7 @@ VideoLayout layout_of(const Pictures& pictures, const Eigen::VectorXd& times, co
 }
 
 /// Draws batches of pictures on all threads and encodes them in order.
-void write_frames(const Pictures& pictures, const WriteRequest& request,
+void write_frames(const Pictures& pictures, const std::filesystem::path& target,
                   const std::filesystem::path& file, const Context& context) {
   const Eigen::VectorXd times =
       pictures.times.size() == pictures.count ? pictures.times : default_times(pictures.count);
@@ -150,14 +150,13 @@ void write_frames(const Pictures& pictures, const WriteRequest& request,
     for (int i = 0; i < static_cast<int>(drawn.size()); ++i) {
       const Image& image = drawn[static_cast<std::size_t>(i)];
       if (!encoder) {
-        encoder =
-            create_video(file, request.target, layout_of(pictures, times, image, request.target));
+        encoder = create_video(file, target, layout_of(pictures, times, image, target));
         size.width = image.width;
         size.height = image.height;
       }
       if (image.width != size.width || image.height != size.height) {
-        throw MismatchError(request.target.string() + ": picture " + std::to_string(first + i) +
-                            " has " + size_text(image) + " pixels, expected " + size_text(size) +
+        throw MismatchError(target.string() + ": picture " + std::to_string(first + i) + " has " +
+                            size_text(image) + " pixels, expected " + size_text(size) +
                             " as the first; write them to a folder");
       }
       encoder->add(image, times[first + i]);
@@ -167,14 +166,14 @@ void write_frames(const Pictures& pictures, const WriteRequest& request,
   if (encoder) encoder->finish();
 }
 
-std::vector<std::filesystem::path> write_video(const Data& data, const WriteRequest& request,
-                                               const Context& context) {
-  return write_with_extra(request, [&]() -> std::vector<std::filesystem::path> {
-    PendingOutputs outputs(request.overwrite, request.inputs, request.together);
-    write_frames(std::get<Pictures>(data), request,
-                 outputs.add(request.target, PendingOutput::Kind::file), context);
+Format::Paths write_video(const Data& data, const std::filesystem::path& target,
+                          const WriteOptions& options, const Context& context) {
+  return write_with_extra(target, options, [&]() -> Format::Paths {
+    PendingOutputs outputs(options.overwrite, options.inputs, options.together);
+    write_frames(std::get<Pictures>(data), target, outputs.add(target, PendingOutput::Kind::file),
+                 context);
     outputs.commit();
-    return {request.target};
+    return {target};
   });
 }
 

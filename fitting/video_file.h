@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
+#include "toolkit/io/image.h"
 #include "toolkit/mesh/context.h"
-#include "toolkit/operations/image.h"
 #include "toolkit/operations/operation.h"
 
 namespace mimetra {

@@ -3,8 +3,8 @@
 #include <iostream>
 
 #include <mimetra/samples/head/head.h>
-#include <mimetra/toolkit/io/model_file.h>
-#include <mimetra/toolkit/io/sequence_file.h>
+#include <mimetra/toolkit/formats/model_file.h>
+#include <mimetra/toolkit/formats/sequence_file.h>
 #include <mimetra/toolkit/mesh/alignment.h>
 #include <mimetra/toolkit/regions/regions.h>
 #include <mimetra/toolkit/transfer/blendshape_transfer.h>

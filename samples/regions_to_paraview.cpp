@@ -3,7 +3,7 @@
 #include <iostream>
 
 #include <mimetra/samples/head/head.h>
-#include <mimetra/toolkit/io/sequence_file.h>
+#include <mimetra/toolkit/formats/sequence_file.h>
 #include <mimetra/toolkit/mesh/alignment.h>
 #include <mimetra/toolkit/regions/regions.h>
 #include <mimetra/toolkit/vtk/vtp_series.h>

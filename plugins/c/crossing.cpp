@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/parameter.h"
 #include "toolkit/operations/option_words.h"
-#include "toolkit/operations/parameter.h"
 
 namespace mimetra {
 

@@ -6,7 +6,7 @@
 
 #include "plugins/c/crossing.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/operations/parameter.h"
+#include "toolkit/mesh/parameter.h"
 
 namespace mimetra {
 

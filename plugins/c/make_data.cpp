@@ -6,13 +6,14 @@
 #include "plugins/c/crossing.h"
 #include "plugins/c/given_arrays.h"
 #include "plugins/c/value.h"
+#include "toolkit/io/format.h"
+#include "toolkit/io/frame_times.h"
 #include "toolkit/io/painting_file.h"
-#include "toolkit/io/sequence_format.h"
 #include "toolkit/io/weight_file.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/parameter.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/expression_notes.h"
-#include "toolkit/operations/parameter.h"
 
 namespace mimetra {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "plugins/c/mimetra.h"
-#include "toolkit/operations/data.h"
+#include "toolkit/io/data.h"
 
 namespace mimetra {
 

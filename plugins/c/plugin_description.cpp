@@ -12,11 +12,11 @@
 #include "plugins/c/interface.h"
 #include "plugins/c/job.h"
 #include "plugins/c/make_data.h"
+#include "toolkit/io/format.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/operations/format.h"
-#include "toolkit/operations/parameter.h"
+#include "toolkit/mesh/parameter.h"
 
 namespace mimetra {
 
@@ -231,48 +231,40 @@ std::string extension_of(const char* extension, const std::string& what) {
 
 /// Input of one run: the file and its options.
 Invocation invocation_of(const std::string& path, const std::vector<Parameter>& options,
-                         const Parameters& given, const Context& context) {
+                         const Parameters* given, const Context& context) {
   std::vector<Parameter> declared = options;
   declared.push_back({kPath, ParameterKind::text, {}, ""});
   Invocation invocation;
   invocation.parameters = Parameters(std::move(declared));
   for (const Parameter& option : options) {
-    invocation.parameters.set(option.name, given.value(option.name));
+    if (given) invocation.parameters.set(option.name, given->value(option.name));
   }
   invocation.parameters.set(kPath, path);
   invocation.context = context;
   return invocation;
 }
 
-/// Loads all frames of a value, since functions of plugins cannot stream.
-Data in_memory(const Data& data, const Context& context) {
-  const auto* streamed = std::get_if<FieldSequence>(&data);
-  if (!streamed || streamed->is_in_memory()) return data;
-  return FieldSequence(MeshSequence(*streamed->frames, context.part(0, 0)), streamed->fields,
-                       streamed->displacement);
-}
-
 /// Drops data that the reader did not request, and checks the number of vertices.
-void fit_to(const ReadRequest& request, const std::string& text, Data& data) {
-  if (auto* sequence = std::get_if<FieldSequence>(&data); sequence && !request.fields) {
+void fit_to(const ReadOptions& options, const std::string& text, Data& data) {
+  if (auto* sequence = std::get_if<FieldSequence>(&data); sequence && !options.fields) {
     sequence->fields.clear();
   }
-  if (auto* held = std::get_if<ModelData>(&data); held && !request.identities) {
+  if (auto* held = std::get_if<ModelData>(&data); held && !options.identities) {
     *held = ModelData{MorphableModel(held->model.person())};
   }
   const auto* held = std::get_if<RegionData>(&data);
-  if (held && held->regions.vertices != request.vertices) {
+  if (held && held->regions.vertices != options.vertices) {
     throw MismatchError(text + ": regions of a mesh of " + std::to_string(held->regions.vertices) +
-                        " vertices, expected " + std::to_string(request.vertices));
+                        " vertices, expected " + std::to_string(options.vertices));
   }
 }
 
 ReadValue read_by(PluginFunction function, const Operation& operation, const std::string& text,
-                  const ReadRequest& request, const Context& context) {
+                  const ReadOptions& options, const Context& context) {
   if (!fs::exists(text)) fail_missing(text);
   function.subject = text + " (" + function.subject + ")";
   ReadValue read;
-  Invocation invocation = invocation_of(text, operation.parameters, request.parameters, context);
+  Invocation invocation = invocation_of(text, operation.parameters, options.parameters, context);
   invocation.log = [&read](LogLevel level, const std::string& note) {
     if (level == LogLevel::warning) read.notes.push_back(note);
   };
@@ -280,20 +272,21 @@ ReadValue read_by(PluginFunction function, const Operation& operation, const std
   read.value = std::move(outcome.outputs.at(kValue).front());
   read.value.name = text;
   read.files = {text};
-  fit_to(request, text, read.value.data);
+  fit_to(options, text, read.value.data);
   return read;
 }
 
-std::vector<fs::path> write_by(PluginFunction function, const Operation& operation,
-                               const Data& data, const WriteRequest& request,
-                               const Context& context) {
-  check_inputs_stay(request.target, request.inputs);
-  function.subject = request.target.string() + " (" + function.subject + ")";
-  return write_with_extra(request, [&]() -> std::vector<fs::path> {
-    PendingOutputs outputs(request.overwrite, request.inputs, request.together);
-    const fs::path file = outputs.add(request.target, PendingOutput::Kind::file);
-    Invocation invocation = invocation_of(file, operation.parameters, request.parameters, context);
-    invocation.inputs[kValue] = {{request.target.stem().string(), in_memory(data, context)}};
+Format::Paths write_by(PluginFunction function, const Operation& operation, const Data& data,
+                       const fs::path& target, const WriteOptions& options,
+                       const Context& context) {
+  check_inputs_stay(target, options.inputs);
+  function.subject = target.string() + " (" + function.subject + ")";
+  return write_with_extra(target, options, [&]() -> Format::Paths {
+    PendingOutputs outputs(options.overwrite, options.inputs, options.together);
+    const fs::path file = outputs.add(target, PendingOutput::Kind::file);
+    Invocation invocation = invocation_of(file, operation.parameters, options.parameters, context);
+    // Functions of plugins cannot stream.
+    invocation.inputs[kValue] = {{target.stem().string(), in_memory(data, context.part(0, 0))}};
     function(operation, invocation);
     std::error_code unreadable;
     const auto bytes = fs::file_size(file, unreadable);
@@ -301,7 +294,7 @@ std::vector<fs::path> write_by(PluginFunction function, const Operation& operati
       throw OutputError(function.subject, "wrote nothing");
     }
     outputs.commit();
-    return {request.target};
+    return {target};
   });
 }
 
@@ -338,9 +331,9 @@ Format plugin_format(const mimetra_format& described, const std::string& plugin,
     operation.parameters = format.reading;
     operation.outputs = {{kValue, format.kind, ""}};
     const PluginFunction read{described.read, described.user, plugin, toolkit};
-    format.read = [read, operation](const std::string& text, const ReadRequest& request,
+    format.read = [read, operation](const std::string& text, const ReadOptions& options,
                                     const Context& context) {
-      return read_by(read, operation, text, request, context);
+      return read_by(read, operation, text, options, context);
     };
   }
   if (described.write) {
@@ -348,9 +341,9 @@ Format plugin_format(const mimetra_format& described, const std::string& plugin,
     operation.outputs.clear();
     operation.inputs = {{kValue, format.kind, ""}};
     const PluginFunction write{described.write, described.user, plugin, toolkit};
-    format.write = [write, operation](const Data& data, const WriteRequest& request,
-                                      const Context& context) {
-      return write_by(write, operation, data, request, context);
+    format.write = [write, operation](const Data& data, const fs::path& target,
+                                      const WriteOptions& options, const Context& context) {
+      return write_by(write, operation, data, target, options, context);
     };
   }
   return format;

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "plugins/c/context_handle.h"
-#include "toolkit/operations/format.h"
+#include "toolkit/io/format.h"
 #include "toolkit/operations/operation.h"
 
 /// Converts descriptions of operations and formats by plugins.

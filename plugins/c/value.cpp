@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/file_parameters.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/io/regions_file.h"
 #include "toolkit/mesh/fields.h"
@@ -361,11 +362,12 @@ void write_data(const mimetra_context& context, const Data& data, const std::str
   std::vector<Parameter> declared = format.writing;
   declared.push_back(kForce);
   const Parameters parameters = parameters_of(std::move(declared), settings);
-  const WriteRequest request{path, parameters, parameters.flag("force")};
-  for (const std::string& note : notes_on_losses(format, data, request)) {
+  WriteOptions options = write_options(format.writing, parameters);
+  options.overwrite = parameters.flag("force");
+  for (const std::string& note : notes_on_losses(format, data, path, options)) {
     if (context.log) context.log(LogLevel::warning, note);
   }
-  format.write(data, request, context.context);
+  format.write(data, path, options, context.context);
 }
 
 }  // namespace mimetra

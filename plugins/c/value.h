@@ -11,7 +11,7 @@
 
 #include "plugins/c/context_handle.h"
 #include "plugins/c/mimetra.h"
-#include "toolkit/operations/data.h"
+#include "toolkit/io/data.h"
 
 namespace mimetra {
 

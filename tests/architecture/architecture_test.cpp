@@ -188,7 +188,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Include{"toolkit/vtk/a.h", "#include <vtkPolyData.h>"},
                     Include{"toolkit/vtk/a.cpp", "#include <EGL/egl.h>"},
                     Include{"toolkit/vtk/a.cpp", "#include <vtkRenderWindow.h>"},
-                    Include{"plugins/paraview/a.cpp", "#include <toolkit/io/pending_output.h>"},
+                    Include{"plugins/paraview/a.cpp", "#include <toolkit/report/report.h>"},
                     Include{"toolkit/vtk/a.cpp", "#include \"toolkit/drawing/picture.h\""},
                     Include{"toolkit/pictures/a.cpp", "#include \"toolkit/report/x.h\""},
                     Include{"toolkit/cli/a.cpp", "#include <dlib/image_io.h>"},
@@ -239,8 +239,8 @@ TEST(PrivateHeaderRule, HoldsAcrossFoldersOnly) {
 }
 
 TEST(NameRule, FindsTwoHeadersOfOneName) {
-  EXPECT_THAT(test::name_errors({{"fitting/image.h", ""}, {"toolkit/operations/image.h", ""}}),
-              ElementsAre("toolkit/operations/image.h: has the name of fitting/image.h"));
+  EXPECT_THAT(test::name_errors({{"fitting/image.h", ""}, {"toolkit/io/image.h", ""}}),
+              ElementsAre("toolkit/io/image.h: has the name of fitting/image.h"));
 }
 
 TEST(CircleRule, TakesAHeaderAndItsSourceForOne) {

@@ -277,7 +277,8 @@ const std::vector<FolderRule>& folder_rules() {
       folders.insert(folders.end(), more.begin(), more.end());
       return folders;
     };
-    const std::vector<std::string> below_operations = with(below_pipeline, {"pipeline", "io"});
+    const std::vector<std::string> below_operations =
+        with(below_pipeline, {"pipeline", "io", "format_gltf", "format_hdf5", "formats"});
     const std::vector<std::string> up_to_operations = with(below_operations, {"operations"});
     const std::vector<std::string> up_to_vtk = with(up_to_operations, {"vtk"});
     const std::vector<std::string> up_to_report =
@@ -298,7 +299,16 @@ const std::vector<FolderRule>& folder_rules() {
         {"io",
          "toolkit/io",
          {"mesh", "model", "splocs", "regions", "correspondence"},
-         {"OpenMesh", "JSON", "libzip", "zlib", "libpng", "libjpeg", "meshoptimizer", "Draco"}},
+         {"OpenMesh", "JSON", "libzip", "zlib", "libpng", "libjpeg"}},
+        {"format_gltf",
+         "toolkit/formats/gltf",
+         {"mesh", "model", "io"},
+         {"JSON", "meshoptimizer", "Draco"}},
+        {"format_hdf5", "toolkit/formats/hdf5", {"mesh", "splocs", "io"}, {"zlib"}},
+        {"formats",
+         "toolkit/formats",
+         {"mesh", "model", "splocs", "regions", "io", "format_gltf", "format_hdf5"},
+         {"JSON"}},
         {"operations", "toolkit/operations", below_operations, {"JSON", "xxHash"}},
         {"vtk", "toolkit/vtk", up_to_operations, {"VTK", "JSON"}},
         {"drawing", "toolkit/drawing", up_to_vtk, {"VTK", "VTK's rendering", "OpenGL"}},
@@ -306,7 +316,7 @@ const std::vector<FolderRule>& folder_rules() {
         {"report", "toolkit/report", with(up_to_vtk, {"drawing", "pictures"}), {"VTK", "JSON"}},
         {"fitting",
          "fitting",
-         {"mesh", "model", "correspondence", "io", "operations"},
+         {"mesh", "model", "correspondence", "io", "formats", "operations"},
          {"dlib", "FFmpeg", "JSON"}},
         {"samples", "samples/head", up_to_operations, {"JSON"}},
         // The C interface makes values of all kinds, and shows them.
@@ -317,10 +327,14 @@ const std::vector<FolderRule>& folder_rules() {
         {"plugin", "samples/plugin", {"c"}},
         {"cli",
          "toolkit/cli",
-         {"mesh", "splocs", "io", "operations", "vtk", "pictures", "report", "fitting", "samples",
-          "c"},
+         {"mesh", "splocs", "io", "format_hdf5", "formats", "operations", "vtk", "pictures",
+          "report", "fitting", "samples", "c"},
          {"CLI11", "spdlog", "fmt", "JSON", "MPI"}},
-        {"paraview", "plugins/paraview", {"mesh", "pipeline", "operations", "vtk", "c"}, {}, true},
+        {"paraview",
+         "plugins/paraview",
+         {"mesh", "pipeline", "io", "operations", "vtk", "c"},
+         {},
+         true},
         {"meshlab", "plugins/meshlab", {"operations", "c"}, {}, true},
         {"blender", "plugins/blender", {"operations", "c"}, {}, true},
     };

@@ -7,8 +7,8 @@
 
 #include "tests/bench/process.h"
 #include "tests/bench/splocs_bench.h"
-#include "toolkit/io/model_file.h"
-#include "toolkit/io/sequence_file.h"
+#include "toolkit/formats/model_file.h"
+#include "toolkit/formats/sequence_file.h"
 
 namespace mimetra::bench {
 namespace {
@@ -33,7 +33,7 @@ std::string target_text(const Subject& subject, const fs::path& scratch) {
   const BlendshapeModel& target = subject.target;
   const MorphableModel model(target.shared_connectivity(), target.neutral(), {},
                              target.expressions());
-  write_model(scratch / "actor", model, {}, true);
+  write_model(scratch / "actor", model, {}, {.overwrite = true});
   return scratch / "actor";
 }
 

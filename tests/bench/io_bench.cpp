@@ -1,7 +1,7 @@
 #include "tests/bench/io_bench.h"
 
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/io/array_file.h"
-#include "toolkit/io/sequence_file.h"
 
 namespace mimetra::bench {
 namespace {
@@ -10,9 +10,9 @@ namespace fs = std::filesystem;
 
 constexpr const char* kGroup = "files";
 
-SequenceWriteOptions in_format(MeshFormat format) {
-  SequenceWriteOptions options;
-  options.format = format;
+WriteOptions in_format(const std::string& format) {
+  WriteOptions options;
+  options.frame_format = format;
   options.overwrite = true;
   return options;
 }
@@ -30,14 +30,13 @@ std::vector<Row> io_rows(const Subject& subject, const fs::path& scratch,
     cases.push_back(
         {{kGroup, what, size, {0, file_bytes + in_memory}, {"", 0, file_bytes}}, std::move(run)});
   };
-  for (const MeshFormat format : {MeshFormat::obj, MeshFormat::ply}) {
-    const std::string name(choice_name(format));
+  for (const std::string name : {"obj", "ply"}) {
     const fs::path folder = scratch / name;
-    write_sequence(performance, folder, in_format(format));
+    write_sequence(performance, folder, in_format(name));
     const double bytes = bytes_below(folder);
     add("read " + name + " files", bytes, [folder] { read_sequence(folder); });
     add("write " + name + " files", bytes,
-        [folder, format, &performance] { write_sequence(performance, folder, in_format(format)); });
+        [folder, name, &performance] { write_sequence(performance, folder, in_format(name)); });
   }
   const fs::path array = scratch / "array.npy";
   write_npy_frames(array, performance.positions());

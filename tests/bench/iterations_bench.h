@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tests/bench/subjects.h"
-#include "toolkit/operations/image.h"
+#include "toolkit/io/image.h"
 
 namespace mimetra::bench {
 

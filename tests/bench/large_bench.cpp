@@ -8,7 +8,7 @@
 
 #include "tests/bench/process.h"
 #include "tests/bench/subjects.h"
-#include "toolkit/io/sequence_file.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/splocs/decomposition.h"
 #include "toolkit/splocs/surface_distances.h"
 

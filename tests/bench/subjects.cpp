@@ -8,7 +8,7 @@
 
 #include "samples/head/head.h"
 #include "tests/test_folders.h"
-#include "toolkit/io/model_file.h"
+#include "toolkit/formats/model_file.h"
 #include "toolkit/io/weight_file.h"
 #include "toolkit/mesh/measures.h"
 #include "toolkit/model/animation.h"

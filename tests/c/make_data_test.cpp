@@ -11,9 +11,9 @@
 #include "plugins/c/make_data.h"
 #include "plugins/c/value.h"
 #include "tests/shapes.h"
+#include "toolkit/io/image.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/operations/image.h"
-#include "toolkit/operations/parameter.h"
+#include "toolkit/mesh/parameter.h"
 
 namespace mimetra {
 namespace {

@@ -38,8 +38,7 @@ class PluginFormat : public testing::Test {
   std::vector<fs::path> write(const Data& data, const std::string& name) const {
     const fs::path target = folder_.path() / name;
     const Format& format = table_.writer({"out", kind_of(data), ""}, target);
-    const Parameters parameters(format.writing);
-    return format.write(data, {.target = target, .parameters = parameters}, {});
+    return format.write(data, target, {}, {});
   }
 
   std::vector<std::string> names() const {
@@ -74,17 +73,16 @@ TEST_F(PluginFormat, ReadsAValueWithItsOptionsForTheMeshAtHand) {
   const std::string text = file("a.spot");
   const Format& format = table_.reader(DataKind::regions, text);
   Parameters parameters(format.reading);
-  ReadRequest request{.parameters = parameters};
-  request.vertices = 25;
-  const ReadValue read = format.read(text, request, {});
+  const ReadOptions options{.vertices = 25, .parameters = &parameters};
+  const ReadValue read = format.read(text, options, {});
   EXPECT_EQ(std::get<RegionData>(read.value.data).regions.regions.size(), 1u);
   EXPECT_EQ(read.value.name, text);
   EXPECT_THAT(read.files, ElementsAre(fs::path(text)));
   EXPECT_THAT(read.notes, ElementsAre(HasSubstr("a note")));
   parameters.set("vertices", std::int64_t{24});
-  EXPECT_THAT([&] { format.read(text, request, {}); },
+  EXPECT_THAT([&] { format.read(text, options, {}); },
               ThrowsMessage<MismatchError>(AllOf(HasSubstr("24 vertices"), HasSubstr("25"))));
-  EXPECT_THROW(format.read(folder_.path() / "none.spot", request, {}), IoError);
+  EXPECT_THROW(format.read(folder_.path() / "none.spot", options, {}), IoError);
 }
 
 TEST_F(PluginFormat, WritesAValueUnderTheNameThatWasAskedFor) {
@@ -110,8 +108,7 @@ TEST_F(PluginFormat, ThatFailsEndsWithItsMessageAndLeavesNothing) {
               ThrowsMessage<MismatchError>(AllOf(HasSubstr("a.half"), HasSubstr("only half"))));
   EXPECT_THAT(names(), IsEmpty());
   const std::string text = file("b.none");
-  const Parameters none;
-  EXPECT_THAT([&] { table_.reader(DataKind::sequence, text).read(text, {.parameters = none}, {}); },
+  EXPECT_THAT([&] { table_.reader(DataKind::sequence, text).read(text, {}, {}); },
               ThrowsMessage<std::runtime_error>(AllOf(HasSubstr("b.none"), HasSubstr("0 values"))));
 }
 

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "toolkit/cli/command_line.h"
-#include "toolkit/operations/bound_parameters.h"
+#include "toolkit/mesh/bound_parameters.h"
 
 namespace mimetra {
 namespace {

@@ -14,8 +14,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/shapes.h"
-#include "toolkit/io/model_file.h"
-#include "toolkit/io/sequence_file.h"
+#include "toolkit/formats/model_file.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/io/weight_file.h"
 
 namespace mimetra::test {
@@ -35,7 +35,7 @@ class CommandTest : public testing::Test {
     ASSERT_NE(mkdtemp(pattern.data()), nullptr);
     folder_ = pattern;
     const WeightTrack track = performance();
-    write_model(folder_ / "head", model(), track, false);
+    write_model(folder_ / "head", model(), track);
     write_weights(folder_ / "take.csv", track, false);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }

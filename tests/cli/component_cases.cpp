@@ -1,7 +1,7 @@
 #include <limits>
 
 #include "tests/cli/bad_input.h"
-#include "toolkit/io/components_file.h"
+#include "toolkit/formats/hdf5/components_file.h"
 
 /// Files of components, and the sequence they are used with.
 namespace mimetra::test {
@@ -20,7 +20,7 @@ std::function<void(const fs::path&)> stored(const std::function<void(Components&
     components.support = Eigen::MatrixXd::Zero(2, model.vertices());
     components.centers = {48, 71};
     change(components);
-    write_components(folder / "c.h5", components, true);
+    write_components(folder / "c.h5", components, {.overwrite = true});
   };
 }
 

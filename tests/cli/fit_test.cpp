@@ -21,7 +21,7 @@ class Fit : public test::QuickCommandTest {
   void SetUp() override {
     CommandTest::SetUp();
     clip_ = test::synthetic_clip(7, {.frames = kFrames, .noise = 0.5});
-    write_model(folder_ / "face", clip_.model, {}, false);
+    write_model(folder_ / "face", clip_.model);
     std::string mapping;
     for (const int vertex : clip_.vertices) mapping += std::to_string(vertex) + '\n';
     write("face/landmarks68.txt", mapping);

@@ -28,8 +28,7 @@ void odd_model(const fs::path& folder) {
       MorphableModel(
           std::make_shared<Connectivity>(Connectivity::from_triangles(vertices, triangles)), mean,
           {{}, Eigen::MatrixXd(3 * vertices, 0)},
-          {model.expressions().names, with_zero_rows(model.expressions().displacements, 3)}),
-      std::nullopt, false);
+          {model.expressions().names, with_zero_rows(model.expressions().displacements, 3)}));
 }
 
 /// The patch as one mesh file, with faces changed.

@@ -1,7 +1,7 @@
 #include <limits>
 
 #include "tests/cli/bad_input.h"
-#include "toolkit/io/hdf5_image.h"
+#include "toolkit/formats/hdf5/hdf5_image.h"
 
 /// Sequences in HDF5.
 namespace mimetra::test {

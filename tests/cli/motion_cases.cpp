@@ -1,5 +1,5 @@
 #include "tests/cli/bad_input.h"
-#include "toolkit/io/sequence_file.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/mesh/unit_change.h"
 
 /// Every operation where motion is missing, and every number of components that is too high or low.
@@ -61,8 +61,7 @@ void moving_dot(const fs::path& folder) {
   fields(3 * 112, 0) = fields(3 * 112 + 2, 1) = 1;
   write_model(folder / "dot",
               MorphableModel(std::make_shared<Connectivity>(model.connectivity()), model.mean(),
-                             model.identities(), {{"aside", "up"}, fields}),
-              std::nullopt, false);
+                             model.identities(), {{"aside", "up"}, fields}));
   write_bytes_to(folder / "dot.csv", "aside,up\n0,0\n1,0\n0,1\n0.5,0.2\n");
 }
 
@@ -96,10 +95,8 @@ void with_idle_expression(const fs::path& folder) {
   expressions.names.push_back("idle");
   expressions.displacements.conservativeResize(Eigen::NoChange, 4);
   expressions.displacements.col(3).setZero();
-  write_model(folder / "idle",
-              MorphableModel(std::make_shared<Connectivity>(model.connectivity()), model.mean(),
-                             model.identities(), expressions),
-              std::nullopt, false);
+  write_model(folder / "idle", MorphableModel(std::make_shared<Connectivity>(model.connectivity()),
+                                              model.mean(), model.identities(), expressions));
 }
 
 }  // namespace

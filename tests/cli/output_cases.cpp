@@ -191,8 +191,7 @@ std::vector<BadInput> request_cases() {
              write_model(
                  folder / "small",
                  MorphableModel(std::make_shared<Connectivity>(model.connectivity()),
-                                model.mean() / 1000, model.identities(), model.expressions()),
-                 std::nullopt, false);
+                                model.mean() / 1000, model.identities(), model.expressions()));
            },
            "render head small --size 32 -o r.png", 0,
            {"small is 1000 times as small as head", "one scale", "--scale"});

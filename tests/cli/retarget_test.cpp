@@ -133,10 +133,8 @@ TEST_F(RetargetCommand, TakesAMapFromOneTopologyToAnother) {
     shapes.displacements.middleRows(3 * v, 3) =
         fine.expressions().displacements.middleRows(3 * of_fine, 3);
   }
-  write_model(folder_ / "small",
-              MorphableModel(std::make_shared<Connectivity>(coarse.connectivity), coarse.positions,
-                             {}, shapes),
-              std::nullopt, false);
+  write_model(folder_ / "small", MorphableModel(std::make_shared<Connectivity>(coarse.connectivity),
+                                                coarse.positions, {}, shapes));
   write("m.txt", test::patch_markers(0));
   const auto report = report_of(
       "retarget head small --weights take.csv --markers m.txt -o w.csv --map-out map.json");
@@ -176,10 +174,8 @@ class ConvertWeights : public RetargetCommand {
     const MorphableModel head = model();
     ShapeBasis shapes = head.average().expressions();
     shapes.names = {"mouthSmile_L", "jawOpen", "browInnerUp"};
-    write_model(
-        folder_ / "arkit",
-        MorphableModel(head.average().shared_connectivity(), head.average().neutral(), {}, shapes),
-        std::nullopt, false);
+    write_model(folder_ / "arkit", MorphableModel(head.average().shared_connectivity(),
+                                                  head.average().neutral(), {}, shapes));
     WeightTrack track = performance();
     track.names = {"mouthSmileLeft", "jawOpen", "browInnerUp"};
     track.times = Eigen::VectorXd::LinSpaced(12, 0, 1.1);

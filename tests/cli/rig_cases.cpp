@@ -1,7 +1,7 @@
 #include "tests/cli/bad_input.h"
 #include "tests/cli/matched_patch.h"
 #include "tests/shapes.h"
-#include "toolkit/io/sequence_file.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/mesh/unit_change.h"
 
 /// Examples of a rig.

@@ -75,11 +75,11 @@ class ScaleTest : public test::QuickCommandTest, public testing::WithParamInterf
 
 TEST_P(ScaleTest, ChangesNothingButTheUnit) {
   const Measured& measured = GetParam();
-  write_model(folder_ / "head", uneven(), std::nullopt, true);
+  write_model(folder_ / "head", uneven(), std::nullopt, {.overwrite = true});
   const json expected = report(measured.arguments);
   for (const Place& place :
        {Place{"far_away", 1, 1e6}, Place{"micro", 1e-6, 0}, Place{"mega", 1e6, 0}}) {
-    write_model(folder_ / "head", placed(place), std::nullopt, true);
+    write_model(folder_ / "head", placed(place), std::nullopt, {.overwrite = true});
     const json found = report(measured.arguments);
     const auto compare = [&](const std::vector<std::string>& keys, double factor) {
       for (const std::string& key : keys) {
@@ -143,7 +143,7 @@ TEST_F(FarAway, FramesKeepTheirMotionInTheDefaultPrecision) {
   const MorphableModel model = FarAway::model();
   const MorphableModel far(std::make_shared<Connectivity>(model.connectivity()),
                            model.mean().array() + 1e6, model.identities(), model.expressions());
-  write_model(folder_ / "far", far, performance(), false);
+  write_model(folder_ / "far", far, performance());
   for (const std::string output : {"frames", "frames --format obj --force"}) {
     ASSERT_EQ(run("convert far --weights take.csv -o " + output).code, 0);
     const MeshSequence written = read_sequence((folder_ / "frames").string()).sequence;

@@ -28,7 +28,7 @@ TEST_F(TwoVideos, BecomeTheSourcesExpressionsOnTheTargetsFaceInThreeCommands) {
   const MorphableModel head = samples::parametric_head();
   const test::TwoVideos videos = test::two_videos(
       head, test::vertices_of_landmarks(), track.weights.topRows(60), track.times.head(60), 2);
-  write_model(folder_ / "model", head, {}, false);
+  write_model(folder_ / "model", head);
   std::string mapping;
   for (const int vertex : videos.vertices) mapping += std::to_string(vertex) + '\n';
   write("model/landmarks68.txt", mapping);

@@ -8,7 +8,7 @@
 #include "fitting/landmark_mapping.h"
 #include "tests/fitting/two_videos.h"
 #include "tests/shared_data.h"
-#include "toolkit/io/model_file.h"
+#include "toolkit/formats/model_file.h"
 
 /// What is made of landmarks that err in every frame in the same way, or wildly.
 namespace mimetra {

@@ -12,7 +12,7 @@
 #include "samples/head/head.h"
 #include "tests/fitting/two_videos.h"
 #include "tests/shared_data.h"
-#include "toolkit/io/model_file.h"
+#include "toolkit/formats/model_file.h"
 
 /// What the solvers and the two ways to see identity find of a clip that is known: docs/accuracy.md
 /// has the table that this prints in a release build.

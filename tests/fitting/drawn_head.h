@@ -9,7 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "samples/head/head.h"
-#include "toolkit/operations/image.h"
+#include "toolkit/io/image.h"
 
 namespace mimetra::test {
 

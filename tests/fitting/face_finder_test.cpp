@@ -13,7 +13,7 @@
 #include "tests/fitting/saved_image.h"
 #include "tests/shared_data.h"
 #include "tests/temporary_folder.h"
-#include "toolkit/io/model_file.h"
+#include "toolkit/formats/model_file.h"
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra::test {

@@ -10,7 +10,7 @@
 #include "fitting/landmark_fitter.h"
 #include "tests/fitting/two_videos.h"
 #include "tests/temporary_folder.h"
-#include "toolkit/operations/parameter.h"
+#include "toolkit/mesh/parameter.h"
 
 namespace mimetra {
 namespace {

@@ -9,7 +9,7 @@
 #include "fitting/landmark_fitter.h"
 #include "fitting/landmark_mapping.h"
 #include "tests/shared_data.h"
-#include "toolkit/io/model_file.h"
+#include "toolkit/formats/model_file.h"
 
 /// The paper's alternation on a photograph against another program's.
 namespace mimetra::test {

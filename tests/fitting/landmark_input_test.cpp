@@ -31,9 +31,9 @@ class LandmarkInput : public testing::Test {
     }
     return names;
   }
-  LandmarksRead read(const std::string& name, const SequenceSource& source = {},
+  LandmarksRead read(const std::string& name, const ReadOptions& reading = {},
                      const LandmarkInputOptions& options = {}) {
-    return read_landmark_input((folder_ / name).string(), source, options);
+    return read_landmark_input((folder_ / name).string(), reading, options);
   }
   std::string path(const std::string& name) { return (folder_ / name).string(); }
   test::TemporaryFolder folder_;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "fitting/video_codec.h"
-#include "toolkit/operations/image.h"
+#include "toolkit/io/image.h"
 
 namespace mimetra::test {
 

@@ -9,7 +9,7 @@
 #include "fitting/landmark_mapping.h"
 #include "tests/fitting/two_videos.h"
 #include "tests/shared_data.h"
-#include "toolkit/io/model_file.h"
+#include "toolkit/formats/model_file.h"
 #include "toolkit/io/weight_file.h"
 
 /// Real models have fifty expressions and more, which landmarks alone do not tell apart.

@@ -5,7 +5,7 @@
 #include <dlib/array2d.h>
 #include <dlib/image_saver/save_png.h>
 
-#include "toolkit/operations/image.h"
+#include "toolkit/io/image.h"
 
 namespace mimetra::test {
 

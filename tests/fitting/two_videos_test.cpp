@@ -8,7 +8,7 @@
 #include "fitting/landmark_mapping.h"
 #include "samples/head/head.h"
 #include "tests/shared_data.h"
-#include "toolkit/io/model_file.h"
+#include "toolkit/formats/model_file.h"
 #include "toolkit/io/weight_file.h"
 #include "toolkit/regions/regions.h"
 #include "toolkit/splocs/decomposition.h"

@@ -49,20 +49,18 @@ std::string name_of(const Format& format) {
 }
 
 void read(const Format& format, const fs::path& file) {
-  const Parameters defaults(format.reading);
-  format.read(file.string(),
-              {.parameters = defaults,
-               .fields = true,
-               .identities = true,
-               .vertices = static_cast<int>(grid().positions.rows()),
-               .triangles = &grid().connectivity.triangles},
-              Context().with_threads(1));
+  const Context context = Context().with_threads(1);
+  ReadValue read = format.read(file.string(),
+                               {.fields = true,
+                                .identities = true,
+                                .vertices = static_cast<int>(grid().positions.rows()),
+                                .triangles = &grid().connectivity.triangles},
+                               context);
+  in_memory(std::move(read.value.data), context);
 }
 
 void write(const Format& format, const Data& value, const fs::path& file) {
-  const Parameters defaults(format.writing);
-  format.write(value, {.target = file, .parameters = defaults, .overwrite = true},
-               Context().with_threads(1));
+  format.write(value, file, {.overwrite = true}, Context().with_threads(1));
 }
 
 /// The value, or one frame of it for a format that holds one.

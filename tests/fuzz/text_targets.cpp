@@ -6,17 +6,17 @@
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/values.h"
 #include "tests/image_bytes.h"
+#include "toolkit/formats/model_file.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/io/correspondence_file.h"
 #include "toolkit/io/example_folder.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/io/marker_file.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/model_file.h"
 #include "toolkit/io/painting_file.h"
 #include "toolkit/io/retargeting_file.h"
 #include "toolkit/io/rules_file.h"
-#include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/model/retargeting.h"
 #include "toolkit/operations/manifest.h"
@@ -96,7 +96,7 @@ void read_times(const fs::path& file) {
   static const fs::path take = [&file] {
     const fs::path written = file.parent_path() / "written";
     write_sequence(*std::get<FieldSequence>(value_of(DataKind::sequence)).frames,
-                   written / "take.npy", {.overwrite = true}, {}, Context().with_threads(1));
+                   written / "take.npy", {.overwrite = true}, Context().with_threads(1));
     fs::remove(written / file.filename());
     for (const auto& entry : fs::directory_iterator(written)) {
       fs::rename(entry.path(), file.parent_path() / entry.path().filename());

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "toolkit/operations/data.h"
+#include "toolkit/io/data.h"
 
 /// Small sound values, for seeds and calls.
 namespace mimetra::fuzz {

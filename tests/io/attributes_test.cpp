@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "tests/temporary_folder.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/io/material_library.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
 
 namespace mimetra {
@@ -42,8 +42,7 @@ class Attributes : public testing::Test {
     write_bytes(folder_ / "take/f_1.obj", moved);
   }
 
-  void convert(const std::string& from, const std::string& to,
-               const SequenceWriteOptions& options = {}) {
+  void convert(const std::string& from, const std::string& to, const WriteOptions& options = {}) {
     const auto open = open_sequence(folder_ / from);
     write_sequence(*open.frames, folder_ / to, options);
   }
@@ -66,13 +65,13 @@ std::vector<double> texture_at_corners(const fs::path& path) {
 
 TEST_F(Attributes, GoFromObjToObjWithTheirLibrary) {
   write_take();
-  convert("take", "out", {.format = MeshFormat::obj});
+  convert("take", "out", {.frame_format = "obj"});
   EXPECT_THAT(text("out/frame_0001.obj"),
               testing::EndsWith("mtllib face.mtl\no head\ng lips\nusemtl skin\nf 1/1 2/2 3/3 4/4\n"
                                 "usemtl teeth\nf 2/5 5/6 3/3\n"));
   EXPECT_EQ(text("out/face.mtl"), text("take/face.mtl"));
   // Deeper down the same texture has another way.
-  convert("take", "a/b", {.format = MeshFormat::obj});
+  convert("take", "a/b", {.frame_format = "obj"});
   EXPECT_THAT(text("a/b/face.mtl"),
               HasSubstr("-bm 2 ../../skins/my skin.png\r\nmap_Bump gone.png"));
   const auto open = open_sequence(folder_ / "take");
@@ -108,7 +107,7 @@ TEST_F(Attributes, OfSeveralLibrariesGoTogether) {
 TEST_F(Attributes, OfALibraryThatIsMissingAreLeftOutAndNamed) {
   write_take();
   fs::remove(folder_ / "take/face.mtl");
-  convert("take", "out", {.format = MeshFormat::obj});
+  convert("take", "out", {.frame_format = "obj"});
   EXPECT_THAT(text("out/frame_0000.obj"), Not(HasSubstr("mtllib")));
   const auto open = open_sequence(folder_ / "take");
   EXPECT_THAT(materials_in_folder(open.frames->connectivity(), folder_ / "out").notes,
@@ -130,7 +129,7 @@ TEST_F(Attributes, TextureOfCornersStandsInPlyAsMeshLabHasIt) {
   EXPECT_THAT(text("plys/frame_0000.ply"), HasSubstr("property list uchar float texcoord\n"));
   EXPECT_EQ(texture_at_corners(folder_ / "plys/frame_0001.ply"),
             texture_at_corners(folder_ / "take/f_0.obj"));
-  convert("plys", "back", {.format = MeshFormat::obj});
+  convert("plys", "back", {.frame_format = "obj"});
   EXPECT_EQ(texture_at_corners(folder_ / "back/frame_0000.obj"),
             texture_at_corners(folder_ / "take/f_0.obj"));
   EXPECT_EQ(read_mesh(folder_ / "plys/frame_0000.ply").connectivity.texture.coordinates.size(), 6u);
@@ -139,7 +138,7 @@ TEST_F(Attributes, TextureOfCornersStandsInPlyAsMeshLabHasIt) {
 TEST_F(Attributes, TextureGoesWithAnArrayInItsTopology) {
   write_take();
   convert("take", "take.npy");
-  convert("take.npy", "back", {.format = MeshFormat::obj});
+  convert("take.npy", "back", {.frame_format = "obj"});
   EXPECT_EQ(texture_at_corners(folder_ / "back/frame_0001.obj"),
             texture_at_corners(folder_ / "take/f_0.obj"));
 }

@@ -13,9 +13,9 @@
 #include <gtest/gtest.h>
 
 #include "tests/temporary_folder.h"
+#include "toolkit/formats/model_file.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/model_file.h"
-#include "toolkit/io/sequence_file.h"
 #include "toolkit/io/weight_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"

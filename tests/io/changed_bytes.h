@@ -7,7 +7,7 @@
 
 #include <gmock/gmock.h>
 
-#include "toolkit/io/sequence_file.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 

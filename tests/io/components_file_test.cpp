@@ -11,7 +11,7 @@
 
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
-#include "toolkit/io/components_file.h"
+#include "toolkit/formats/hdf5/components_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 
@@ -43,7 +43,7 @@ Components small_components() {
 TEST(ComponentsFile, ComesBackEqualAfterWriting) {
   const test::TemporaryFolder folder;
   const Components written = small_components();
-  write_components(folder / "c.h5", written, false);
+  write_components(folder / "c.h5", written);
   const Components found = read_components(folder / "c.h5");
   EXPECT_EQ(found.rest, written.rest);
   EXPECT_EQ(found.triangles, written.triangles);
@@ -73,7 +73,7 @@ TEST(ComponentsFile, KeepsWhetherTheEnergyConvergedAndWhoseStateItHolds) {
   for (const bool converged : {false, true}) {
     written.converged = converged;
     const auto file = folder / (converged ? "yes.h5" : "no.h5");
-    write_components(file, written, false);
+    write_components(file, written);
     const Components found = read_components(file);
     EXPECT_EQ(found.converged, converged);
     EXPECT_EQ(found.iteration, 2);
@@ -86,7 +86,7 @@ TEST(ComponentsFile, OfAnIterationThatDidNotRunIsAnError) {
   const test::TemporaryFolder folder;
   Components components = small_components();
   components.iteration = 4;
-  write_components(folder / "c.h5", components, false);
+  write_components(folder / "c.h5", components);
   EXPECT_THAT([&] { read_components(folder / "c.h5"); },
               testing::ThrowsMessage<IoError>(
                   testing::HasSubstr("attribute 'iteration' is 4, of 3 'energies'")));
@@ -95,18 +95,18 @@ TEST(ComponentsFile, OfAnIterationThatDidNotRunIsAnError) {
 TEST(ComponentsFile, IsTheSameBytesEveryTime) {
   const test::TemporaryFolder folder;
   const Components components = small_components();
-  write_components(folder / "a.h5", components, false);
+  write_components(folder / "a.h5", components);
   // What is left in freed memory, and the time, must not reach the file.
   { const std::vector<std::string> scribble(1000, std::string(5000, 'x')); }
   const std::time_t second = std::time(nullptr);
   while (std::time(nullptr) == second) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  write_components(folder / "b.h5", components, false);
+  write_components(folder / "b.h5", components);
   EXPECT_TRUE(read_file(folder / "a.h5") == read_file(folder / "b.h5"));
 }
 
 TEST(ComponentsFile, TruncatedAnywhereIsAnError) {
   const test::TemporaryFolder folder;
-  write_components(folder / "c.h5", small_components(), false);
+  write_components(folder / "c.h5", small_components());
   const std::string bytes = read_file(folder / "c.h5");
   for (std::size_t cut = 1; cut <= bytes.size(); cut += 97) {
     const std::size_t length = bytes.size() - cut;
@@ -131,7 +131,7 @@ std::string without_links(std::string bytes, const std::vector<std::string>& nam
 TEST(ComponentsFile, OfTheReferenceHasComponentsAndNoWeights) {
   const test::TemporaryFolder folder;
   const Components written = small_components();
-  write_components(folder / "c.h5", written, false);
+  write_components(folder / "c.h5", written);
   const std::string bytes = read_file(folder / "c.h5");
   std::ofstream(folder / "r.h5", std::ios::binary)
       << without_links(bytes, {"C", "W", "centers", "support", "energies"});
@@ -149,7 +149,7 @@ TEST(ComponentsFile, WithoutCentersGetsTheVertexEachComponentMovesMost) {
   components.centers.clear();
   components.displacements.row(0).segment<3>(3 * 9) << 0, -5, 0;
   components.displacements.row(1).segment<3>(3 * 2) << 3, 0, 4;
-  write_components(folder / "c.h5", components, false);
+  write_components(folder / "c.h5", components);
   EXPECT_EQ(read_components(folder / "c.h5").centers, (std::vector<VertexIndex>{9, 2, -1}));
 }
 
@@ -158,7 +158,7 @@ TEST(ComponentsFile, WithPartsThatDoNotFitOrAreNotFiniteIsAnError) {
   const auto expect_refusal_with = [&folder](const auto& change) {
     Components components = small_components();
     change(components);
-    write_components(folder / "c.h5", components, true);
+    write_components(folder / "c.h5", components, {.overwrite = true});
     EXPECT_THROW(read_components(folder / "c.h5"), IoError);
   };
   expect_refusal_with([](Components& all) { all.centers = {4, 12, -1}; });
@@ -177,8 +177,8 @@ TEST(ComponentsFile, RefusesWhatIsMissingOrNoHdf5) {
 
 TEST(ComponentsFile, RefusesToReplaceUnlessTold) {
   const test::TemporaryFolder folder;
-  write_components(folder / "c.h5", small_components(), false);
-  EXPECT_THROW(write_components(folder / "c.h5", small_components(), false), OutputError);
+  write_components(folder / "c.h5", small_components());
+  EXPECT_THROW(write_components(folder / "c.h5", small_components()), OutputError);
 }
 
 }  // namespace

@@ -5,7 +5,8 @@
 #include "tests/shapes.h"
 #include "tests/shared_data.h"
 #include "tests/temporary_folder.h"
-#include "toolkit/io/sequence_file.h"
+#include "toolkit/formats/formats.h"
+#include "toolkit/formats/sequence_file.h"
 
 namespace mimetra {
 namespace {
@@ -13,9 +14,18 @@ namespace {
 namespace fs = std::filesystem;
 using test::TemporaryFolder;
 
-/// Names of outputs, one for each format that keeps its vertices.
-const std::vector<std::string> kOutputs = {"ply/",  "obj/",  "off/", "a.npy", "a.npz",
-                                           "a.pc2", "a.mdd", "a.h5", "a.glb", "a.gltf"};
+/// Names of outputs, one for each extension of a format that keeps its vertices.
+std::vector<std::string> outputs() {
+  std::vector<std::string> names;
+  for (const Format& format : formats()) {
+    if (!format.open || !format.create || format.has(Format::kFolder)) continue;
+    if (!format.holds({}).vertex_order) continue;
+    for (const std::string& extension : format.extensions) {
+      names.push_back(format.mesh_frame ? extension.substr(1) + '/' : "a" + extension);
+    }
+  }
+  return names;
+}
 
 /// Largest differences of what came back: positions as a share of the longest side, seconds.
 struct Difference {
@@ -26,10 +36,9 @@ struct Difference {
 
 class Conversions : public testing::Test {
  protected:
-  static SequenceWriteOptions options_of(const std::string& output) {
-    SequenceWriteOptions options;
-    if (output == "obj/") options.format = MeshFormat::obj;
-    if (output == "off/") options.format = MeshFormat::off;
+  static WriteOptions options_of(const std::string& output) {
+    WriteOptions options;
+    if (output.ends_with('/')) options.frame_format = output.substr(0, output.size() - 1);
     return options;
   }
 
@@ -49,18 +58,18 @@ class Conversions : public testing::Test {
 
   /// Every format into every other, and what has become of the sequence; printed as a table.
   void expect_all_kept(const std::string& name, const MeshSequence& sequence,
-                       const std::vector<std::string>& outputs) {
+                       const std::vector<std::string>& targets) {
     std::printf("%s: largest difference of positions, share of the longest side\n%8s", name.c_str(),
                 "from/to");
-    for (const std::string& to : outputs) std::printf(" %7s", to.c_str());
+    for (const std::string& to : targets) std::printf(" %7s", to.c_str());
     std::printf("\n");
-    for (const std::string& from : outputs) {
-      const std::string step = "from" + std::to_string(&from - outputs.data());
+    for (const std::string& from : targets) {
+      const std::string step = "from" + std::to_string(&from - targets.data());
       const MeshSequence first = by(sequence, from, step);
       std::printf("%8s", from.c_str());
-      for (const std::string& to : outputs) {
+      for (const std::string& to : targets) {
         const Difference kept =
-            difference(by(first, to, step + "to" + std::to_string(&to - outputs.data())), sequence);
+            difference(by(first, to, step + "to" + std::to_string(&to - targets.data())), sequence);
         std::printf(" %7.1e", kept.positions);
         // Each of the two may round to float32; poses of glTF are sums of two such numbers.
         EXPECT_LT(kept.positions, 4 * 6e-8) << from << " to " << to;
@@ -83,7 +92,7 @@ TEST_F(Conversions, KeepPositionsTimesAndFacesBetweenAnyTwoFormats) {
   }
   Eigen::VectorXd times(5);
   times << 0.25, 0.3, 0.5, 1.5, 1.75;
-  expect_all_kept("made", {mesh.connectivity, poses, times, mesh.positions}, kOutputs);
+  expect_all_kept("made", {mesh.connectivity, poses, times, mesh.positions}, outputs());
 }
 
 TEST_F(Conversions, KeepARealPerformance) {

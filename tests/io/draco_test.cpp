@@ -5,7 +5,7 @@
 #include "tests/io/gltf_builder.h"
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
-#include "toolkit/io/model_file.h"
+#include "toolkit/formats/model_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 

@@ -7,9 +7,9 @@
 
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 
@@ -110,7 +110,7 @@ TEST(FailedAllocation, WhileWritingLeavesNothingUnderTheName) {
   for (const std::string& name : kTakes) {
     const test::TemporaryFolder folder;
     const auto write = [&] {
-      write_sequence(take, folder / name, {.overwrite = true}, {}, Context().with_threads(1));
+      write_sequence(take, folder / name, {.overwrite = true}, Context().with_threads(1));
     };
     const int failed = fail_each(write, [&] {
       for (const std::string& left_behind : folder.names()) {

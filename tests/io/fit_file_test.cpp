@@ -6,9 +6,9 @@
 
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
+#include "toolkit/formats/model_file.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/io/fit_file.h"
-#include "toolkit/io/model_file.h"
-#include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 
@@ -50,7 +50,7 @@ class FitFile : public testing::Test {
     const MorphableModel quad(
         std::make_shared<Connectivity>(Connectivity::from_triangles(4, shape.triangles)),
         shape.positions, {{"wide", "long"}, shapes}, {{"smile"}, Eigen::MatrixXd::Ones(12, 1)});
-    write_model(folder_ / "quad", quad, {}, true);
+    write_model(folder_ / "quad", quad, {}, {.overwrite = true});
     return folder_ / "quad";
   }
 

@@ -5,7 +5,7 @@
 
 #include "tests/io/gltf_fixture.h"
 #include "tests/shared_data.h"
-#include "toolkit/io/gltf_values.h"
+#include "toolkit/formats/gltf/gltf_values.h"
 
 namespace mimetra {
 namespace {

@@ -9,8 +9,8 @@
 #include "tests/io/gltf_builder.h"
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
-#include "toolkit/io/model_file.h"
-#include "toolkit/io/sequence_file.h"
+#include "toolkit/formats/model_file.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 
@@ -33,9 +33,9 @@ inline Positions moved() {
 
 class GltfFiles : public testing::Test {
  protected:
-  MeshSequence read(const std::string& bytes, const SequenceSource& source = {}) {
+  MeshSequence read(const std::string& bytes, const ReadOptions& options = {}) {
     write_bytes(file_, bytes);
-    SequenceRead result = read_sequence(file_.string(), source);
+    SequenceRead result = read_sequence(file_.string(), options);
     notes_ = result.notes;
     return std::move(result.sequence);
   }

@@ -7,11 +7,11 @@
 
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
-#include "toolkit/io/gltf_write.h"
-#include "toolkit/io/mesh_formats.h"
-#include "toolkit/io/model_file.h"
-#include "toolkit/io/sequence_file.h"
-#include "toolkit/io/sequence_format.h"
+#include "toolkit/formats/formats.h"
+#include "toolkit/formats/gltf/gltf_write.h"
+#include "toolkit/formats/model_file.h"
+#include "toolkit/formats/sequence_file.h"
+#include "toolkit/io/single_precision.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/normals.h"
@@ -292,9 +292,9 @@ TEST(GltfText, TextureCoordinatesStayWhereSomeFacesHaveNone) {
     EXPECT_EQ(found.texture.coordinates[static_cast<std::size_t>(found.texture.corners[k])],
               Eigen::Vector2d(0, 0));
   }
-  const SequenceFormat* format = sequence_format("a.glb");
+  const Format* format = sequence_format("a.glb");
   ASSERT_NE(format, nullptr);
-  EXPECT_THAT(parts_left_out(format->holds, sequence),
+  EXPECT_THAT(parts_left_out(format->holds({}), sequence),
               ElementsAre("faces without texture coordinates"));
 }
 
@@ -311,7 +311,7 @@ TEST(GltfText, TextureCoordinatesThatNoCornerHasAreNotWritten) {
   EXPECT_TRUE(read_sequence((folder / "a.glb").string())
                   .sequence.connectivity()
                   .texture.coordinates.empty());
-  EXPECT_THAT(parts_left_out(sequence_format("a.glb")->holds, sequence), testing::IsEmpty());
+  EXPECT_THAT(parts_left_out(sequence_format("a.glb")->holds({}), sequence), testing::IsEmpty());
 }
 
 /// Sparse weights take few bytes, and every target has bounds, as the specification requires.

@@ -8,9 +8,9 @@
 #include "tests/io/hdf5_library.h"
 #include "tests/shared_data.h"
 #include "tests/temporary_folder.h"
-#include "toolkit/io/components_file.h"
-#include "toolkit/io/hdf5_file.h"
-#include "toolkit/io/hdf5_image.h"
+#include "toolkit/formats/hdf5/components_file.h"
+#include "toolkit/formats/hdf5/hdf5_file.h"
+#include "toolkit/formats/hdf5/hdf5_image.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 

@@ -9,8 +9,8 @@
 
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/io/array_file.h"
-#include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/option.h"
@@ -282,21 +282,18 @@ MeshSequence twenty_frames() {
   return {mesh.connectivity, frames};
 }
 
-class EveryFormat : public testing::TestWithParam<std::string> {
- protected:
-  MeshFormat format() const { return *choice_of<MeshFormat>(GetParam()); }
-};
+class EveryFormat : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryFormat, IsWrittenAndReadAlikeByAnyNumberOfThreads) {
   const TemporaryFolder folder;
   const MeshSequence sequence = twenty_frames();
   const fs::path one = folder / "1";
-  write_sequence(sequence, one, {.format = format()}, {}, Context().with_threads(1));
+  write_sequence(sequence, one, {.frame_format = GetParam()}, Context().with_threads(1));
   const Frames read =
       read_sequence(one.string(), {}, Context().with_threads(1)).sequence.positions();
   for (const int threads : {2, 3}) {
     const fs::path other = folder / std::to_string(threads);
-    for (const fs::path& file : write_sequence(sequence, other, {.format = format()}, {},
+    for (const fs::path& file : write_sequence(sequence, other, {.frame_format = GetParam()},
                                                Context().with_threads(threads))) {
       EXPECT_EQ(read_file(file), read_file(one / file.filename()));
     }
@@ -307,7 +304,7 @@ TEST_P(EveryFormat, IsWrittenAndReadAlikeByAnyNumberOfThreads) {
 
 TEST_P(EveryFormat, NamesTheFirstBadFrameWhicheverThreadFindsIt) {
   const TemporaryFolder folder;
-  write_sequence(twenty_frames(), folder / "a", {.format = format()});
+  write_sequence(twenty_frames(), folder / "a", {.frame_format = GetParam()});
   for (const char* frame : {"frame_0005.", "frame_0006.", "frame_0019."}) {
     write_bytes(folder / "a" / (frame + GetParam()), "?");
   }

@@ -9,8 +9,8 @@
 #include "tests/shapes.h"
 #include "tests/shared_data.h"
 #include "tests/temporary_folder.h"
-#include "toolkit/io/model_file.h"
-#include "toolkit/io/sequence_file.h"
+#include "toolkit/formats/model_file.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/io/weight_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
@@ -82,7 +82,7 @@ class Model : public testing::Test {
 
 TEST_F(Model, ComesBackAfterWriting) {
   const MorphableModel model = small_model();
-  write_model(folder_ / "m", model, {}, false);
+  write_model(folder_ / "m", model);
   ASSERT_TRUE(is_model(folder_ / "m"));
   const MorphableModel found = read_model(folder_ / "m");
   EXPECT_EQ(found.mean(), model.mean());
@@ -95,7 +95,7 @@ TEST_F(Model, ComesBackAfterWriting) {
 
 TEST_F(Model, AppearsWithItsPerformanceAndFurtherFiles) {
   const WeightTrack track{{"smile"}, Eigen::Vector2d(0, 1), Eigen::Vector2d(0, 0.04)};
-  write_model(folder_ / "m", small_model(), track, false, {{"landmarks68.txt", "1 = 2"}});
+  write_model(folder_ / "m", small_model(), track, {.extra = {{"landmarks68.txt", "1 = 2"}}});
   EXPECT_EQ(read_weights(folder_ / "m/performance.csv").weights, track.weights);
   EXPECT_EQ(read_file(folder_ / "m/landmarks68.txt"), "1 = 2");
 }
@@ -104,13 +104,13 @@ TEST_F(Model, IsNotWrittenWhereAShapeNameCannotBeAFile) {
   for (const char* name : {"", "../up", ".hidden", "a/b"}) {
     const MorphableModel model(small_model().shared_connectivity(), small_model().mean(), {},
                                {{name}, Eigen::MatrixXd::Ones(36, 1)});
-    EXPECT_THROW(write_model(folder_ / "m", model, {}, false), OutputError) << name;
+    EXPECT_THROW(write_model(folder_ / "m", model), OutputError) << name;
     EXPECT_TRUE(folder_.names().empty()) << name;
   }
 }
 
 TEST_F(Model, ConsistsOfTheFilesThatAreReadAndNotOfStrangers) {
-  write_model(folder_ / "m", small_model(), {}, false, {{"landmarks68.txt", "1 = 2"}});
+  write_model(folder_ / "m", small_model(), {}, {.extra = {{"landmarks68.txt", "1 = 2"}}});
   std::filesystem::create_directory(folder_ / "m/renders");
   write("m/renders/strange.png", "large");
   write("m/expressions/notes.doc", "strange");
@@ -166,7 +166,7 @@ TEST_F(Model, OfAnotherTopologyIsAMismatch) {
 }
 
 TEST_F(Model, JsonNamesItsParts) {
-  write_model(folder_ / "m", small_model(), {}, false);
+  write_model(folder_ / "m", small_model());
   std::filesystem::rename(folder_ / "m/expressions", folder_ / "m/poses");
   write("m/model.json", R"({"neutral": "neutral.ply", "expressions": "poses"})");
   const MorphableModel found = read_model(folder_ / "m");
@@ -178,7 +178,7 @@ TEST_F(Model, JsonNamesItsParts) {
 
 TEST_F(Model, PersonMovesTheNeutralAlongItsIdentities) {
   const MorphableModel model = small_model();
-  write_model(folder_ / "m", model, {}, false);
+  write_model(folder_ / "m", model);
   const ModelSpec spec = ModelSpec::parse((folder_ / "m").string() + "@wide=1.5,long=-1");
   const BlendshapeModel person = read_person(spec);
   const Eigen::VectorXd moved =
@@ -189,14 +189,14 @@ TEST_F(Model, PersonMovesTheNeutralAlongItsIdentities) {
 }
 
 TEST_F(Model, BlendshapesAreThePersonThatTheTextSpeaksOf) {
-  write_model(folder_ / "m", small_model(), {}, false);
+  write_model(folder_ / "m", small_model());
   const std::string text = (folder_ / "m").string() + "@long=0.5";
   EXPECT_EQ(read_blendshapes(text).neutral(), read_person(ModelSpec::parse(text)).neutral());
   EXPECT_EQ(read_blendshapes((folder_ / "m").string()).neutral(), read_model(folder_ / "m").mean());
 }
 
 TEST_F(Model, UnknownIdentityIsAMismatchThatSaysWhatThereIs) {
-  write_model(folder_ / "m", small_model(), {}, false);
+  write_model(folder_ / "m", small_model());
   const ModelSpec spec = ModelSpec::parse((folder_ / "m").string() + "@tall=1");
   EXPECT_THAT(message_of([&] { read_person(spec); }), HasSubstr("no identity 'tall'; there are 2"));
 }
@@ -335,7 +335,7 @@ TEST(RealModels, HaveTheSizesTheirAuthorsState) {
 
 TEST_F(Model, HasItsFoldersAndItsNeutralInAnyCase) {
   const MorphableModel model = small_model();
-  write_model(folder_ / "m", model, {}, false);
+  write_model(folder_ / "m", model);
   const auto rename = [this](const char* from, const char* to) {
     std::filesystem::rename(folder_ / "m" / from, folder_ / "m" / to);
   };
@@ -350,7 +350,7 @@ TEST_F(Model, HasItsFoldersAndItsNeutralInAnyCase) {
 }
 
 TEST_F(Model, SaysWhichMeshesItLeavesUnread) {
-  write_model(folder_ / "m", small_model(), {}, false);
+  write_model(folder_ / "m", small_model());
   std::filesystem::rename(folder_ / "m/expressions", folder_ / "m/shapes");
   EXPECT_THAT(notes_on_unread(folder_ / "m"),
               testing::ElementsAre(testing::AllOf(HasSubstr("has no expressions; shapes/ in it"),
@@ -361,7 +361,7 @@ TEST_F(Model, SaysWhichMeshesItLeavesUnread) {
 }
 
 TEST_F(Model, IsNotBesideItsExpressionsRestPose) {
-  write_model(folder_ / "m", small_model(), {}, false);
+  write_model(folder_ / "m", small_model());
   std::filesystem::copy_file(folder_ / "m/neutral.ply", folder_ / "m/expressions.rest.ply");
   EXPECT_THAT(meshes_beside_model(folder_ / "m"), testing::IsEmpty());
   std::filesystem::copy_file(folder_ / "m/neutral.ply", folder_ / "m/scan.ply");
@@ -372,7 +372,7 @@ TEST_F(Model, IsNotBesideItsExpressionsRestPose) {
 
 TEST_F(Model, WithExpressionsSaysWhichMeshesItLeavesUnread) {
   namespace fs = std::filesystem;
-  write_model(folder_ / "m", small_model(), {}, false);
+  write_model(folder_ / "m", small_model());
   for (const char* other : {"expressions/upper", "Targets", "frames"}) {
     fs::create_directory(folder_ / "m" / other);
     fs::copy_file(folder_ / "m/expressions/smile.ply", folder_ / "m" / other / "grin.ply");
@@ -383,7 +383,7 @@ TEST_F(Model, WithExpressionsSaysWhichMeshesItLeavesUnread) {
 }
 
 TEST_F(Model, WithoutExpressionsIsDrivenByNoWeightsAndNamesTheFolderThatIsNotRead) {
-  write_model(folder_ / "m", small_model(), {}, false);
+  write_model(folder_ / "m", small_model());
   std::filesystem::rename(folder_ / "m/expressions", folder_ / "m/blendshapes");
   write_bytes(folder_ / "w.csv", "smile\n0.5\n");
   EXPECT_THAT(test::message_of<MismatchError>([this] {

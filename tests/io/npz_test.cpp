@@ -6,9 +6,9 @@
 
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/io/array_file.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 
@@ -54,8 +54,8 @@ const std::vector<std::int64_t> kFace = {0, 1, 2};
 
 class NpzFiles : public testing::Test {
  protected:
-  MeshSequence read(const SequenceSource& source = {}) const {
-    return read_sequence((folder_ / "a.npz").string(), source).sequence;
+  MeshSequence read(const ReadOptions& options = {}) const {
+    return read_sequence((folder_ / "a.npz").string(), options).sequence;
   }
   void write(const Members& members, bool compressed = false) const {
     write_archive(folder_ / "a.npz", members, compressed);
@@ -129,7 +129,7 @@ TEST_F(NpzFiles, ComeBackBitByBitWithPolygonsTimesAndRest) {
   const Connectivity mixed = Connectivity::from_polygons(4, {{0, 1, 3, 2, 0, 2, 1}, {0, 4, 7}});
   const MeshSequence sequence(mixed, Frames::Random(5, 12), Eigen::VectorXd::LinSpaced(5, 0.1, 0.7),
                               corners);
-  EXPECT_THAT(write_sequence(sequence, folder_ / "a.npz", {}, {{"a.run.json", "{}"}}),
+  EXPECT_THAT(write_sequence(sequence, folder_ / "a.npz", {.extra = {{"a.run.json", "{}"}}}),
               ElementsAre(folder_ / "a.npz", folder_ / "a.run.json"));
   EXPECT_THAT(folder_.names(), ElementsAre("a.npz", "a.run.json"));
   const MeshSequence back = read();
@@ -142,8 +142,8 @@ TEST_F(NpzFiles, ComeBackBitByBitWithPolygonsTimesAndRest) {
 TEST_F(NpzFiles, AreTheSameBytesEveryTime) {
   const MeshSequence sequence(test::mesh_of(test::octahedron()).connectivity,
                               Frames::Constant(3, 18, 0.5));
-  write_sequence(sequence, folder_ / "a.npz", {}, {}, Context().with_threads(1));
-  write_sequence(sequence, folder_ / "b.npz", {}, {}, Context().with_threads(3));
+  write_sequence(sequence, folder_ / "a.npz", {}, Context().with_threads(1));
+  write_sequence(sequence, folder_ / "b.npz", {}, Context().with_threads(3));
   EXPECT_EQ(read_file(folder_ / "a.npz"), read_file(folder_ / "b.npz"));
 }
 

@@ -8,9 +8,9 @@
 #include "tests/io/mesh_text.h"
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
-#include "toolkit/io/mesh_codecs.h"
+#include "toolkit/formats/sequence_file.h"
+#include "toolkit/io/mesh_content.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/openmesh.h"
@@ -376,7 +376,7 @@ TEST_F(OmFile, OfAWholeSequenceStandInAFolder) {
     frames.row(f) = ((1 + f) * shape.positions).reshaped<Eigen::RowMajor>().transpose();
   }
   const MeshSequence sequence(test::mesh_of(shape).connectivity, frames);
-  write_sequence(sequence, folder_ / "take", {.format = MeshFormat::om});
+  write_sequence(sequence, folder_ / "take", {.frame_format = "om"});
   EXPECT_EQ(read_sequence((folder_ / "take").string()).sequence.positions(), frames);
 }
 

@@ -7,8 +7,8 @@
 
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 
@@ -77,8 +77,8 @@ class PointCaches : public testing::Test {
     write_mesh(folder_ / "a.topology.ply", test::mesh_of(test::octahedron()));
   }
 
-  MeshSequence read(const std::string& name, const SequenceSource& source = {}) const {
-    return read_sequence((folder_ / name).string(), source).sequence;
+  MeshSequence read(const std::string& name, const ReadOptions& options = {}) const {
+    return read_sequence((folder_ / name).string(), options).sequence;
   }
   std::string error(const std::string& name, const std::string& bytes) const {
     write_bytes(folder_ / name, bytes);

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/temporary_folder.h"
-#include "toolkit/io/model_file.h"
+#include "toolkit/formats/model_file.h"
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {

@@ -1,4 +1,4 @@
-#include "toolkit/io/sequence_file.h"
+#include "toolkit/formats/sequence_file.h"
 
 #include <gmock/gmock.h>
 
@@ -219,10 +219,10 @@ TEST(WriteSequence, ArrayMayHaveItsExtensionInCapitals) {
 }
 
 TEST(WriteSequence, FolderComesBackBitByBitInDoublePrecisionWithTheRestPoseBesideIt) {
-  for (const MeshFormat format : {MeshFormat::ply, MeshFormat::obj, MeshFormat::off}) {
+  for (const std::string format : {"ply", "obj", "off"}) {
     const TemporaryFolder folder;
     const MeshSequence sequence = octahedra(3, pose(-3));
-    write_sequence(sequence, folder / "s", {.format = format, .double_precision = true});
+    write_sequence(sequence, folder / "s", {.frame_format = format, .double_precision = true});
     EXPECT_THAT(folder.names(), ElementsAre("s", "s.rest.ply"));
     const SequenceRead read = read_sequence((folder / "s").string() + "/");
     EXPECT_EQ(read.sequence.positions(), sequence.positions());
@@ -232,7 +232,7 @@ TEST(WriteSequence, FolderComesBackBitByBitInDoublePrecisionWithTheRestPoseBesid
 
 TEST(WriteSequence, FolderHoldsNumberedFramesAndNothingElse) {
   const TemporaryFolder folder;
-  write_sequence(octahedra(2), folder / "s", {}, {{"mimetra-run.json", "{}"}});
+  write_sequence(octahedra(2), folder / "s", {.extra = {{"mimetra-run.json", "{}"}}});
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder / "s")) {
     names.push_back(entry.path().filename().string());
@@ -262,7 +262,7 @@ TEST(FrameName, HasFourDigitsAndMoreWhereTheLastFrameNeedsThem) {
 
 TEST(WriteSequence, StlFolderComesBackWithTheVerticesOfItsFirstFrame) {
   const TemporaryFolder folder;
-  write_sequence(octahedra(3, pose(1)), folder / "s", {.format = MeshFormat::stl});
+  write_sequence(octahedra(3, pose(1)), folder / "s", {.frame_format = "stl"});
   EXPECT_EQ(read_sequence((folder / "s").string(), {.frames = "1:3"}).sequence.vertices(), 6);
 }
 
@@ -316,7 +316,7 @@ TEST(WriteSequence, KeepsWhatIsAPartOfAnotherOfItsName) {
 TEST(WriteSequence, LeavesNothingWhenCancelled) {
   const TemporaryFolder folder;
   for (const char* name : {"a/b/s", "a/b/s.npy", "a/b/s.npz"}) {
-    EXPECT_THROW(write_sequence(octahedra(5, pose(1)), folder / name, {}, {},
+    EXPECT_THROW(write_sequence(octahedra(5, pose(1)), folder / name, {},
                                 Context().with_progress([](double share) { return share < 0.5; })),
                  Cancelled)
         << name;
@@ -326,8 +326,8 @@ TEST(WriteSequence, LeavesNothingWhenCancelled) {
 
 TEST(WriteSequence, OneFrameGoesIntoOneFileWithItsExtrasBeside) {
   const TemporaryFolder folder;
-  write_sequence(octahedra(1), folder / "a.obj", {.double_precision = true},
-                 {{"a.run.json", "{}"}});
+  write_sequence(octahedra(1), folder / "a.obj",
+                 {.double_precision = true, .extra = {{"a.run.json", "{}"}}});
   EXPECT_THAT(folder.names(), ElementsAre("a.obj", "a.run.json"));
   EXPECT_EQ(read_mesh(folder / "a.obj").positions, pose(0));
 }
@@ -394,7 +394,7 @@ TEST_F(SmallModel, WithoutWeightsIsItsNeutral) {
 TEST_F(SmallModel, KeepsItsExpressionsWhereItIsWrittenAlsoInOtherUnits) {
   write_bytes(folder_ / "w.csv", "time,jawOpen,pout\n0,0,0\n0.5,0.25,0.5\n");
   for (const bool driven : {false, true}) {
-    SequenceSource source;
+    ReadOptions source;
     if (driven) source.weights = folder_ / "w.csv";
     const auto given = open_sequence(text(), source).frames;
     const UnitChange change{.scale = 0.5, .up = UpTurn::y_to_z};

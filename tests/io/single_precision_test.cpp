@@ -5,8 +5,8 @@
 
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/sequence_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/mesh_sequence.h"
 
@@ -27,18 +27,18 @@ MeshSequence leaping_grid() {
 
 TEST(SinglePrecision, IsLeftForDoubleInMeshFilesThatHaveIt) {
   const test::TemporaryFolder folder;
-  for (const MeshFormat format : {MeshFormat::ply, MeshFormat::obj, MeshFormat::off}) {
-    const auto place = folder / std::string(choice_name(format));
-    write_sequence(leaping_grid(), place, {.format = format});
+  for (const std::string format : {"ply", "obj", "off"}) {
+    const auto place = folder / format;
+    write_sequence(leaping_grid(), place, {.frame_format = format});
     EXPECT_EQ(read_sequence(place).sequence.positions(), leaping_grid().positions());
-    const auto one = folder / ("one." + std::string(choice_name(format)));
+    const auto one = folder / ("one." + format);
     write_sequence(leaping_grid().slice(1, 2), one);
     EXPECT_EQ(read_mesh(one).positions, leaping_grid().frame(1));
   }
 }
 
 TEST(SinglePrecision, RefusesWhatItCannotHoldAndNamesFrameAndVertex) {
-  const auto refusal = [](const std::string& name, const SequenceWriteOptions& options = {}) {
+  const auto refusal = [](const std::string& name, const WriteOptions& options = {}) {
     const test::TemporaryFolder folder;
     std::string message = test::message_of<MismatchError>(
         [&] { write_sequence(leaping_grid(), folder / name, options); });
@@ -52,7 +52,7 @@ TEST(SinglePrecision, RefusesWhatItCannotHoldAndNamesFrameAndVertex) {
   EXPECT_THAT(refusal("take.glb"), names_it);
   EXPECT_THAT(refusal("take.npy", {.single_precision = true}), names_it);
   EXPECT_THAT(refusal("take.npz", {.single_precision = true}), names_it);
-  EXPECT_THAT(refusal("take", {.format = MeshFormat::stl}),
+  EXPECT_THAT(refusal("take", {.frame_format = "stl"}),
               HasSubstr("take/frame_0001.stl: vertex 7 is at 1e+39"));
 }
 

@@ -5,8 +5,8 @@
 #include "tests/io/hdf5_library.h"
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
-#include "toolkit/io/components_file.h"
-#include "toolkit/io/sequence_file.h"
+#include "toolkit/formats/hdf5/components_file.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 
@@ -108,11 +108,11 @@ TEST_F(Splocs, SequenceOfOtherToolsIsReadByTheirNamesAndAxes) {
 }
 
 TEST_F(Splocs, SequenceIsTheSameBytesEveryTime) {
-  write_sequence(sequence_of_quads(), folder_ / "a.h5", {}, {}, Context().with_threads(1));
+  write_sequence(sequence_of_quads(), folder_ / "a.h5", {}, Context().with_threads(1));
   { const std::vector<std::string> scribble(1000, std::string(5000, 'x')); }
   std::srand(1);
   const MeshSequence written = read_sequence((folder_ / "a.h5").string()).sequence;
-  write_sequence(written, folder_ / "b.h5", {}, {}, Context().with_threads(2));
+  write_sequence(written, folder_ / "b.h5", {}, Context().with_threads(2));
   EXPECT_TRUE(read_file(folder_ / "a.h5") == read_file(folder_ / "b.h5"));
 }
 
@@ -152,7 +152,7 @@ TEST_F(Splocs, ComponentsAndSequencesAreToldApart) {
   components.rest = shape.positions;
   components.triangles = shape.triangles;
   components.displacements = Eigen::MatrixXd::Random(2, 27);
-  write_components(folder_ / "c.h5", components, false);
+  write_components(folder_ / "c.h5", components);
   EXPECT_THAT(test::message_of<IoError>([this] { read_sequence((folder_ / "c.h5").string()); }),
               HasSubstr("holds components, expected a sequence"));
   {

@@ -2,7 +2,7 @@
 
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
-#include "toolkit/io/sequence_file.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 

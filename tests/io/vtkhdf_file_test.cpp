@@ -2,7 +2,7 @@
 
 #include "tests/io/hdf5_library.h"
 #include "tests/temporary_folder.h"
-#include "toolkit/io/vtkhdf_file.h"
+#include "toolkit/formats/hdf5/vtkhdf_file.h"
 #include "toolkit/io/whole_file.h"
 
 namespace mimetra {
@@ -129,7 +129,7 @@ TEST_F(Vtkhdf, KeepsWholeNumbersThatAnIntDoesNotHold) {
 }
 
 TEST_F(Vtkhdf, IsTheSameBytesEveryTime) {
-  write_vtkhdf(sequence_, folder_ / "b.vtkhdf", {}, {}, Context().with_threads(1));
+  write_vtkhdf(sequence_, folder_ / "b.vtkhdf", {}, Context().with_threads(1));
   EXPECT_TRUE(read_file(file_) == read_file(folder_ / "b.vtkhdf"));
 }
 

@@ -1,4 +1,4 @@
-#include "toolkit/operations/bound_parameters.h"
+#include "toolkit/mesh/bound_parameters.h"
 
 #include <cmath>
 #include <limits>

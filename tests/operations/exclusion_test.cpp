@@ -1,4 +1,4 @@
-#include "toolkit/operations/parameter.h"
+#include "toolkit/mesh/parameter.h"
 
 #include <set>
 #include <sstream>

@@ -31,12 +31,11 @@ const OperationTable& toolkit_table() {
 /// Of regions, read and written.
 Format format_of(const std::string& extension) {
   Format format{.name = "mine", .kind = DataKind::regions, .extensions = {extension}};
-  format.read = [](const std::string& text, const ReadRequest&, const Context&) -> ReadValue {
+  format.read = [](const std::string& text, const ReadOptions&, const Context&) -> ReadValue {
     return {{text, RegionData()}};
   };
-  format.write = [](const Data&, const WriteRequest&, const Context&) {
-    return std::vector<std::filesystem::path>();
-  };
+  format.write = [](const Data&, const std::filesystem::path&, const WriteOptions&,
+                    const Context&) { return Format::Paths(); };
   return format;
 }
 
@@ -47,15 +46,12 @@ TEST(FormatTable, WritesNoWeightsThatWouldBeReadAsTimes) {
     const std::filesystem::path target = folder / (std::string("w") + extension);
     const Format& format = table.writer({"weights", DataKind::table, ""}, target);
     const Table timed{{"time", "jawOpen", "Time_ms"}, {{0, 0.5, 1}}};
-    const Parameters parameters(format.writing);
-    EXPECT_THAT([&] { format.write(timed, {.target = target, .parameters = parameters}, {}); },
+    EXPECT_THAT([&] { format.write(timed, target, {}, {}); },
                 ThrowsMessage<MismatchError>(HasSubstr("an expression is called 'Time_ms'")));
     EXPECT_FALSE(std::filesystem::exists(target));
     for (const char* name : {"Frame", "frame_index", "Timecode", "BlendShapeCount", "timestamp"}) {
       const Table numbered{{"time", "jawOpen", name}, {{0, 0.5, 1}}};
-      EXPECT_THROW(format.write(numbered, {.target = target, .parameters = parameters}, {}),
-                   MismatchError)
-          << name;
+      EXPECT_THROW(format.write(numbered, target, {}, {}), MismatchError) << name;
     }
   }
 }

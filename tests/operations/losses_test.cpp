@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/shapes.h"
+#include "toolkit/io/file_parameters.h"
 #include "toolkit/operations/operation.h"
 
 namespace mimetra {
@@ -39,7 +40,7 @@ std::vector<std::string> notes_on(const FieldSequence& sequence, const std::stri
   const Format& format = table.writer({"out", DataKind::sequence, ""}, target);
   Parameters parameters(format.writing);
   if (!folder_format.empty()) parameters.set("format", folder_format);
-  return notes_on_losses(format, sequence, {.target = target, .parameters = parameters});
+  return notes_on_losses(format, sequence, target, write_options(format.writing, parameters));
 }
 
 TEST(Losses, AreNamedInOneLine) {

@@ -57,9 +57,8 @@ TEST(OperationTable, RefusesAParameterThatMeansTwoThings) {
   format.kind = DataKind::components;
   format.extensions = {".x"};
   format.writing = {{"rho", ParameterKind::text, {}, "another rho"}};
-  format.write = [](const Data&, const WriteRequest&, const Context&) {
-    return std::vector<std::filesystem::path>();
-  };
+  format.write = [](const Data&, const std::filesystem::path&, const WriteOptions&,
+                    const Context&) { return Format::Paths(); };
   EXPECT_THAT([&] { table.add(format); },
               testing::ThrowsMessage<std::invalid_argument>(HasSubstr("'rho' means two things")));
 }

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/temporary_folder.h"
-#include "toolkit/operations/parameter.h"
+#include "toolkit/mesh/parameter.h"
 
 namespace mimetra {
 namespace {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/temporary_folder.h"
-#include "toolkit/operations/image.h"
+#include "toolkit/io/image.h"
 
 namespace mimetra::test {
 

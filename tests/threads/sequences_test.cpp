@@ -4,8 +4,8 @@
 
 #include "tests/temporary_folder.h"
 #include "tests/threads/together.h"
-#include "toolkit/io/sequence_file.h"
-#include "toolkit/io/sequence_format.h"
+#include "toolkit/formats/formats.h"
+#include "toolkit/formats/sequence_file.h"
 
 namespace mimetra {
 namespace {
@@ -17,27 +17,34 @@ constexpr int kFrames = 16;
 
 const Context kTwoThreads = Context().with_threads(2);
 
+/// Formats whose sequences can be written and read again.
+std::vector<Format> sequence_formats() {
+  std::vector<Format> found = formats();
+  std::erase_if(found, [](const Format& format) {
+    return !format.open || !format.create || format.has(Format::kFolder);
+  });
+  return found;
+}
+
 /// A file, or a folder where the format's files hold one mesh each.
-std::string output_of(const SequenceFormat& format) {
+std::string output_of(const Format& format) {
   const std::string& extension = format.extensions.front();
   return is_mesh_extension(extension) ? extension.substr(1) + "/" : "a" + extension;
 }
 
-SequenceWriteOptions options_of(const SequenceFormat& format) {
-  SequenceWriteOptions options{.overwrite = true};
-  const std::string extension = format.extensions.front().substr(1);
-  for (const MeshFormat mesh : {MeshFormat::obj, MeshFormat::off, MeshFormat::stl}) {
-    if (choice_name(mesh) == extension) options.format = mesh;
-  }
+WriteOptions options_of(const Format& format) {
+  WriteOptions options{.overwrite = true};
+  const std::string& extension = format.extensions.front();
+  if (is_mesh_extension(extension)) options.frame_format = extension.substr(1);
   return options;
 }
 
 TEST(SequencesOfEveryFormat, AreReadByThreadsAtOnce) {
   const test::TemporaryFolder folder;
   const MeshSequence take = test::bulging_sphere(kFrames);
-  for (const SequenceFormat& format : sequence_formats()) {
+  for (const Format& format : sequence_formats()) {
     const std::filesystem::path target = folder / output_of(format);
-    write_sequence(take, target, options_of(format), {}, kTwoThreads);
+    write_sequence(take, target, options_of(format), kTwoThreads);
     const auto frames = open_sequence(target.string(), {}, kTwoThreads).frames;
     const Frames expected = frames->read(0, kFrames);
     together([&](int i) {
@@ -52,11 +59,11 @@ TEST(SequencesOfEveryFormat, AreReadByThreadsAtOnce) {
 TEST(SequencesOfEveryFormat, OfThreadsThatWriteOneOutputOneWinsWhole) {
   const test::TemporaryFolder folder;
   const MeshSequence take = test::bulging_sphere(4);
-  for (const SequenceFormat& format : sequence_formats()) {
+  for (const Format& format : sequence_formats()) {
     const std::filesystem::path target = folder / output_of(format);
     together([&](int i) {
       const Frames poses = take.positions() * (i + 1);
-      write_sequence(take.with_frames(poses), target, options_of(format), {}, kTwoThreads);
+      write_sequence(take.with_frames(poses), target, options_of(format), kTwoThreads);
     });
     const Frames found = read_sequence(target.string()).sequence.positions();
     const bool is_one_of_them = std::ranges::any_of(std::array{1, 2, 3, 4}, [&](double scale) {

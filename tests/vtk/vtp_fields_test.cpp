@@ -49,7 +49,7 @@ class VtpFields : public VtpTest {
     std::vector<std::string> names, notes;
     FieldSequence series;
   };
-  Read read(const VtpReadOptions& options = {}) const {
+  Read read(const ReadOptions& options = {.fields = true}) const {
     Read found;
     const auto take_note = [&found](const Note& note) { found.notes.push_back(note.text); };
     found.series =
@@ -91,7 +91,7 @@ TEST_F(VtpFields, ThatALaterFrameDoesNotHaveSoAreLeftOut) {
 
 TEST_F(VtpFields, OfAChosenFrameAreItsOwn) {
   write(4, [](int frame) { return with_heat(10 * frame); });
-  const Read found = read({.source = {.frames = "2:3"}});
+  const Read found = read({.frames = "2:3", .fields = true});
   EXPECT_THAT(found.notes, IsEmpty());
   EXPECT_TRUE(found.series.fields.at(2).values == Eigen::VectorXd::Constant(5, 20));
 }

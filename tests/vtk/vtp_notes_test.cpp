@@ -35,10 +35,7 @@ class VtpNotes : public VtpTest {
 
   std::vector<std::string> notes_on(const std::filesystem::path& path,
                                     const std::optional<std::string>& frames = {}) const {
-    const Format& reader = table_.reader(DataKind::sequence, path);
-    Parameters parameters(reader.reading);
-    if (frames) parameters.set("frames", *frames);
-    return reader.read(path, {.parameters = parameters}, {}).notes;
+    return table_.reader(DataKind::sequence, path).read(path, {.frames = frames}, {}).notes;
   }
 
   OperationTable table_;
@@ -90,17 +87,15 @@ TEST_F(VtpNotes, NameARestPoseThatStayedWhereItsPointsWereBent) {
 TEST_F(VtpNotes, NameFieldsInWhosePlaceDisplacementsAreWritten) {
   const std::filesystem::path target = in_folder("face.pvd");
   const Format& format = table_.writer(Output{"out", DataKind::sequence, ""}, target);
-  const Parameters parameters(format.writing);
   FieldSequence given = quad_and_triangle();
   given.displacement = false;
-  EXPECT_THAT(notes_on_losses(format, given, {.target = target, .parameters = parameters}),
-              IsEmpty());
+  EXPECT_THAT(notes_on_losses(format, given, target, {}), IsEmpty());
   const Eigen::MatrixXd velocity = Eigen::MatrixXd::Constant(5, 3, 0.25);
   given.fields.push_back({kDisplacement, Field::Location::vertices, velocity});
-  EXPECT_THAT(notes_on_losses(format, given, {.target = target, .parameters = parameters}),
+  EXPECT_THAT(notes_on_losses(format, given, target, {}),
               ElementsAre(HasSubstr("face.pvd: the input's field 'displacement' is replaced by the "
                                     "displacement from the rest pose")));
-  format.write(given, {.target = target, .parameters = parameters}, {});
+  format.write(given, target, {}, {});
   const FieldSequence read = read_vtp_series(target);
   EXPECT_TRUE(read.sequence().rest_is_known());
   EXPECT_EQ(read.fields.size(), given.fields.size() - 1);
@@ -108,8 +103,7 @@ TEST_F(VtpNotes, NameFieldsInWhosePlaceDisplacementsAreWritten) {
   const MeshSequence& moved = given.sequence();
   const MeshSequence without_rest(moved.connectivity(), moved.positions(), moved.times());
   given = FieldSequence(without_rest, given.fields);
-  EXPECT_THAT(notes_on_losses(format, given, {.target = target, .parameters = parameters}),
-              IsEmpty());
+  EXPECT_THAT(notes_on_losses(format, given, target, {}), IsEmpty());
 }
 
 }  // namespace

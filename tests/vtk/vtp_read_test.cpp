@@ -51,8 +51,7 @@ TEST_F(VtpRead, KnowsExtensionsInCapitals) {
 TEST_F(VtpRead, TakesThePartThatIsAskedFor) {
   const FieldSequence written = quad_and_triangle();
   write_vtp_series(written, in_folder("face.pvd"));
-  const MeshSequence read =
-      read_vtp_series(in_folder("face.pvd"), {.source = {.frames = "2:"}}).sequence();
+  const MeshSequence read = read_vtp_series(in_folder("face.pvd"), {.frames = "2:"}).sequence();
   ASSERT_EQ(read.frames(), 1);
   EXPECT_TRUE(read.frame(0).isApprox(written.sequence().frame(2), kRounding));
   EXPECT_EQ(read.times()[0], written.sequence().times()[2]);
@@ -65,8 +64,7 @@ TEST_F(VtpRead, TakesNumberedFilesOfAFolderOrPattern) {
   const std::string folder = in_folder("face_vtp").string();
   for (const std::string& name :
        {folder, folder + "/face_%04d.vtp", folder + "/*.vtp", folder + "/face_*"}) {
-    const MeshSequence read =
-        read_vtp_series(name, {.source = {.frames = "1:", .fps = 10}}).sequence();
+    const MeshSequence read = read_vtp_series(name, {.frames = "1:", .fps = 10}).sequence();
     ASSERT_EQ(read.frames(), 2) << name;
     EXPECT_TRUE(read.frame(1).isApprox(written.sequence().frame(2), kRounding));
     EXPECT_DOUBLE_EQ(read.times()[1] - read.times()[0], 0.1);
@@ -75,9 +73,8 @@ TEST_F(VtpRead, TakesNumberedFilesOfAFolderOrPattern) {
   EXPECT_FALSE(read_vtp_series(folder).sequence().times_are_known());
   std::ofstream(in_folder("face_vtp.times.csv")) << "time\n1\n2\n4\n";
   EXPECT_EQ(read_vtp_series(folder).sequence().times(), Eigen::Vector3d(1, 2, 4));
-  EXPECT_THAT(
-      message_of<std::invalid_argument>([&] { read_vtp_series(folder, {.source = {.fps = 10}}); }),
-      HasSubstr("have times of their own"));
+  EXPECT_THAT(message_of<std::invalid_argument>([&] { read_vtp_series(folder, {.fps = 10}); }),
+              HasSubstr("have times of their own"));
   std::filesystem::copy_file(folder + "/face_0000.vtp", folder + "/face_0003.vtu");
   EXPECT_THAT(message_of<IoError>([&] { read_vtp_series(folder); }),
               HasSubstr("files of several formats"));

@@ -26,11 +26,9 @@ class VtpRegions : public VtpTest {
   Regions read(const FieldSequence& shown) const {
     const std::filesystem::path path = in_folder("r.vtp");
     write_vtp_series(shown, path, {.overwrite = true});
-    const Parameters none;
-    const ReadRequest request{.parameters = none,
-                              .vertices = mesh_.frames->vertices(),
+    const ReadOptions options{.vertices = mesh_.frames->vertices(),
                               .triangles = &mesh_.frames->triangles()};
-    const ReadValue value = table_.reader(DataKind::regions, path).read(path, request, {});
+    const ReadValue value = table_.reader(DataKind::regions, path).read(path, options, {});
     return std::get<RegionData>(value.value.data).regions;
   }
 

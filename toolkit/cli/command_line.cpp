@@ -8,8 +8,8 @@
 #include <CLI/CLI.hpp>
 
 #include "toolkit/cli/command.h"
+#include "toolkit/io/format.h"
 #include "toolkit/io/frame_series.h"
-#include "toolkit/io/mesh_formats.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/parameter_files.h"
 

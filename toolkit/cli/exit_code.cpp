@@ -9,9 +9,9 @@
 #include <spdlog/spdlog.h>
 
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/parameter.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/option_words.h"
-#include "toolkit/operations/parameter.h"
 
 namespace mimetra::cli {
 

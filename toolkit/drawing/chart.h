@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "toolkit/io/data.h"
 #include "toolkit/mesh/option.h"
 #include "toolkit/operations/colors.h"
-#include "toolkit/operations/data.h"
 
 namespace mimetra {
 

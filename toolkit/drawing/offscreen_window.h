@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "toolkit/operations/data.h"
+#include "toolkit/io/data.h"
 
 class vtkRenderWindow;
 

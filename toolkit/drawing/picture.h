@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "toolkit/io/image.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/mesh/option.h"
 #include "toolkit/mesh/tri_mesh.h"
 #include "toolkit/operations/colors.h"
-#include "toolkit/operations/image.h"
 
 namespace mimetra {
 

@@ -7,9 +7,9 @@
 #include <span>
 
 #include "toolkit/io/bytes.h"
+#include "toolkit/io/file_parameters.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/npy_array.h"
-#include "toolkit/io/sequence_format.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/parallel.h"
@@ -282,19 +282,18 @@ class LoadedArray : public PointCache {
   NumericArray array_;
 };
 
-OpenSequence open_npy(const fs::path& path, const SequenceSource& source, const Context& context) {
-  return open_point_cache(open_npy_cache(path), source, {}, context);
+OpenSequence open_npy(const fs::path& path, const ReadOptions& options, const Context& context) {
+  return open_point_cache(open_npy_cache(path), options, {}, context);
 }
 
 std::unique_ptr<FrameSink> begin_npy(const SequenceHeader& header, const fs::path& target,
-                                     const SequenceWriteOptions& options, const ExtraFiles& extra,
-                                     const Context&) {
+                                     const WriteOptions& options, const Context&) {
   const auto begin = [&](const fs::path& path) {
     return begin_npy_cache(path, static_cast<std::size_t>(header.times.size()),
                            static_cast<std::size_t>(header.connectivity->vertices),
                            options.single_precision);
   };
-  return write_point_cache(header, target, options, extra, begin);
+  return write_point_cache(header, target, options, begin);
 }
 
 }  // namespace
@@ -329,14 +328,14 @@ PointCacheTarget begin_npy_cache(const fs::path& path, std::size_t frames, std::
   return target;
 }
 
-SequenceFormat npy_format() {
-  return {"NumPy array",
-          {".npy"},
-          true,
-          SequenceFormat::Precision::double_or_single,
-          open_npy,
-          begin_npy,
-          parts_held_by(MeshFormat::ply)};
+Format npy_format() {
+  return {.name = "NumPy array",
+          .extensions = {".npy"},
+          .reading = reading_parameters(),
+          .writing = writing_parameters({"single"}),
+          .holds = [](const WriteOptions&) { return held_in_folder(".ply"); },
+          .open = open_npy,
+          .create = begin_npy};
 }
 
 NumericArray read_npy(const std::filesystem::path& path) {

@@ -9,8 +9,8 @@
 #include <glob.h>
 
 #include "toolkit/io/file_numbers.h"
+#include "toolkit/io/format.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/sequence_format.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
@@ -235,6 +235,11 @@ FrameRange parsed_range(const std::string& text) {
 
 }  // namespace
 
+bool has_companions(const fs::path& path) {
+  return std::ranges::find(kExtensionsWithCompanions, lower_extension(path)) !=
+         kExtensionsWithCompanions.end();
+}
+
 bool is_companion(const fs::path& file) {
   const std::string name = file.string();
   return name.ends_with(kRestSuffix) || name.ends_with(kTopologySuffix);
@@ -342,8 +347,7 @@ fs::path beside(const fs::path& sequence, const std::string& suffix) {
   if (name.filename() == "." || name.filename() == "..") {
     name = without_trailing_slash(fs::absolute(name));
   }
-  const SequenceFormat* format = sequence_format(name);
-  if (format && format->has_companions) name.replace_extension();
+  if (has_companions(name)) name.replace_extension();
   return name += suffix;
 }
 

@@ -1,13 +1,15 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "toolkit/io/format.h"
 #include "toolkit/io/frame_series.h"
-#include "toolkit/io/mesh_formats.h"
 
 /// Files and frames that the name of a sequence refers to.
 namespace mimetra {
@@ -16,6 +18,12 @@ namespace mimetra {
 inline constexpr const char* kRestSuffix = ".rest.ply";
 inline constexpr const char* kTimesSuffix = ".times.csv";
 inline constexpr const char* kTopologySuffix = ".topology.ply";
+
+/// Extensions of files that store positions and may have such files beside them.
+inline constexpr std::array<std::string_view, 6> kExtensionsWithCompanions = {
+    ".npy", ".npz", ".pc2", ".mdd", ".h5", ".hdf5"};
+/// True if the path has one of these extensions, in any case.
+bool has_companions(const std::filesystem::path& path);
 
 /// True if the name ends like a sequence's rest pose or topology.
 bool is_companion(const std::filesystem::path& file);

@@ -1,9 +1,11 @@
 #include <algorithm>
 
 #include "toolkit/io/bytes.h"
+#include "toolkit/io/file_parameters.h"
+#include "toolkit/io/frame_times.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/point_cache.h"
-#include "toolkit/io/sequence_format.h"
+#include "toolkit/io/sequence_parts.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 
@@ -38,8 +40,8 @@ class MddFile : public StoredPointCache {
   }
 };
 
-OpenSequence open_mdd(const fs::path& path, const SequenceSource& source, const Context& context) {
-  return open_point_cache(std::make_unique<const MddFile>(path), source, {}, context);
+OpenSequence open_mdd(const fs::path& path, const ReadOptions& options, const Context& context) {
+  return open_point_cache(std::make_unique<const MddFile>(path), options, {}, context);
 }
 
 /// Times such as seconds since midnight can be too large for single precision.
@@ -69,20 +71,26 @@ PointCacheTarget begin_mdd_file(const SequenceHeader& header, const fs::path& pa
 }
 
 std::unique_ptr<FrameSink> begin_mdd(const SequenceHeader& header, const fs::path& target,
-                                     const SequenceWriteOptions& options, const ExtraFiles& extra,
-                                     const Context&) {
+                                     const WriteOptions& options, const Context&) {
   check_rounded_times(target, header.times);
-  return write_point_cache(header, target, options, extra,
+  return write_point_cache(header, target, options,
                            [&](const fs::path& path) { return begin_mdd_file(header, path); });
 }
 
 }  // namespace
 
-SequenceFormat mdd_format() {
-  HeldParts holds = parts_held_by(MeshFormat::ply);
-  holds.exact_times = false;
-  return {"MDD point cache", {".mdd"},  true, SequenceFormat::Precision::single,
-          open_mdd,          begin_mdd, holds};
+Format mdd_format() {
+  return {.name = "MDD point cache",
+          .extensions = {".mdd"},
+          .reading = reading_parameters(),
+          .holds =
+              [](const WriteOptions&) {
+                HeldParts held = held_in_folder(".ply");
+                held.exact_times = false;
+                return held;
+              },
+          .open = open_mdd,
+          .create = begin_mdd};
 }
 
 }  // namespace mimetra

@@ -8,7 +8,8 @@
 
 #include "toolkit/io/binary_file.h"
 #include "toolkit/io/material_library.h"
-#include "toolkit/io/mesh_codecs.h"
+#include "toolkit/io/mesh_content.h"
+#include "toolkit/io/single_precision.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/face_order.h"
@@ -82,7 +83,8 @@ void check_faces(const std::string& path, const MeshContent& content) {
 }
 
 MeshContent read_checked(const fs::path& path, std::string_view bytes, const Context& context) {
-  MeshContent content = mesh_codec(lower_extension(path))->read(path.string(), bytes, context);
+  MeshContent content =
+      mesh_format(lower_extension(path))->parse_mesh(path.string(), bytes, context);
   check_finite(path.string(), content.coordinates, "vertex", content.first_index);
   check_faces(path.string(), content);
   return content;
@@ -212,7 +214,7 @@ void check_same_faces(const fs::path& path, const MeshContent& content,
 
 /// True if the format stores corners of triangles without indices.
 bool names_no_vertices(const fs::path& path) {
-  return !mesh_codec(lower_extension(path))->read;
+  return !mesh_format(lower_extension(path))->parse_mesh;
 }
 
 TriMesh mesh_of(const fs::path& path, std::string_view bytes, const Context& context) {
@@ -255,8 +257,8 @@ MeshFileReader::MeshFileReader(fs::path first, const Context& context) : first_(
   constexpr double kMeshShare = 0.9;
   std::string bytes = read_bytes(first_);
   mesh_ = mesh_of(first_, bytes, context.part(0, kMeshShare));
-  if (const auto layout = mesh_codec(lower_extension(first_))->layout) {
-    layout_ = layout(std::move(bytes), static_cast<std::size_t>(mesh_.positions.rows()),
+  if (const auto learn = mesh_format(lower_extension(first_))->further_reader) {
+    further_ = learn(std::move(bytes), static_cast<std::size_t>(mesh_.positions.rows()),
                      context.part(kMeshShare, 1));
   }
 }
@@ -270,7 +272,7 @@ void MeshFileReader::read(const fs::path& path, std::span<double> coordinates) c
   }
   const std::string bytes = read_bytes(path);
   const bool same_format = lower_extension(path) == lower_extension(first_);
-  if (layout_ && same_format && layout_->read(bytes, coordinates)) return;
+  if (further_ && same_format && further_(bytes, coordinates)) return;
   const Positions positions = positions_in(path, bytes, mesh_.connectivity, first_, {});
   std::copy_n(positions.data(), positions.size(), coordinates.begin());
 }
@@ -286,11 +288,11 @@ MeshFileWriter::MeshFileWriter(const Connectivity& connectivity, const std::stri
                                const std::string& name, const Context& context)
     : vertices_(connectivity.vertices),
       single_precision_(!double_precision || lower_case(extension) == ".stl") {
-  const MeshCodec* codec = mesh_codec(extension);
-  if (!codec) throw std::invalid_argument(unknown_mesh_extension(lower_case(extension)));
+  const Format* format = mesh_format(extension);
+  if (!format) throw std::invalid_argument(unknown_mesh_extension(lower_case(extension)));
   try {
     frame_ = std::make_unique<const MeshFrame>(
-        codec->frame(connectivity, fields, double_precision, context));
+        format->mesh_frame(connectivity, fields, double_precision, context));
   } catch (const MismatchError& error) {
     throw MismatchError(name + ": " + error.what());
   }
@@ -316,21 +318,21 @@ void MeshFileWriter::write(const fs::path& path, const PositionsView& positions)
 }
 
 void write_mesh(const fs::path& path, const PositionsView& positions,
-                const Connectivity& connectivity, const MeshWriteOptions& options,
+                const Connectivity& connectivity, const WriteOptions& options,
                 const Context& context) {
   check_options(options);
   context.report(0);
-  const std::string extension =
-      lower_case(options.extension.empty() ? path.extension().string() : options.extension);
+  const fs::path target = committed_name(path);
+  const std::string extension = lower_extension(target);
   if (!is_mesh_extension(extension)) {
     throw OutputError(path.string(), unknown_mesh_extension(extension));
   }
-  MeshFileWriter(connectivity, extension, options.double_precision, options.fields,
-                 committed_name(path).string(), context)
+  MeshFileWriter(connectivity, extension, options.double_precision, options.fields, target.string(),
+                 context)
       .write(path, positions);
 }
 
-void write_mesh(const fs::path& path, const TriMesh& mesh, const MeshWriteOptions& options,
+void write_mesh(const fs::path& path, const TriMesh& mesh, const WriteOptions& options,
                 const Context& context) {
   write_mesh(path, PositionsView(mesh.positions.data(), mesh.positions.rows(), 3),
              mesh.connectivity, options, context);

@@ -5,16 +5,12 @@
 #include <span>
 #include <string>
 
-#include "toolkit/io/mesh_formats.h"
+#include "toolkit/io/format.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/mesh/fields.h"
-#include "toolkit/mesh/option.h"
 #include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
-
-class MeshLayout;
-struct MeshFrame;
 
 /// Reads one mesh by its extension: .obj, .ply (ascii, binary little and big endian), .off, .om
 /// (OpenMesh's own), or .stl (ascii and binary). STL corners at the same position become one
@@ -53,49 +49,33 @@ class MeshFileReader {
  private:
   std::filesystem::path first_;
   TriMesh mesh_;
-  std::unique_ptr<const MeshLayout> layout_;
+  FurtherReader further_;
 };
 
-/// Parts that a folder of files in a format can store.
-HeldParts parts_held_by(MeshFormat format);
-
-struct MeshWriteOptions {
-  /// Coordinates in double precision: binary doubles in PLY and OM, the shortest digits that read
-  /// back equal in text formats. Float otherwise, and always in STL.
-  bool double_precision = false;
-  /// Extension (".ply") of the format to write; empty for the path's own. Set it for paths without
-  /// a meaningful extension, such as PendingOutput's.
-  std::string extension = {};
-  /// Fields to store as properties of .om. Other formats do not store them.
-  std::vector<Field> fields = {};
-
-  static constexpr Option kDoublePrecision{"double_precision", &MeshWriteOptions::double_precision};
-  static constexpr auto declared() { return std::tuple(kDoublePrecision); }
-};
-
-/// Writes one mesh with its polygons, in the format of the extension:
+/// Writes one mesh with its polygons, in the format of the extension, with coordinates as floats
+/// or, by option and never in STL, in double precision:
 ///  - .obj, with texture coordinates and groups, but without the material library, which a sequence
 ///    writes beside it;
 ///  - .ply, binary little endian, with texture coordinates;
 ///  - .off;
-///  - .om, with texture coordinates;
+///  - .om, with texture coordinates and the fields of the options;
 ///  - .stl, binary, as triangles.
 ///
 /// Throws OutputError, MismatchError for values that the precision or the format cannot hold,
 /// Cancelled. Not atomic: see PendingOutput.
 void write_mesh(const std::filesystem::path& path, const PositionsView& positions,
-                const Connectivity& connectivity, const MeshWriteOptions& = {},
+                const Connectivity& connectivity, const WriteOptions& = {},
                 const Context& context = {});
-void write_mesh(const std::filesystem::path& path, const TriMesh& mesh,
-                const MeshWriteOptions& = {}, const Context& context = {});
+void write_mesh(const std::filesystem::path& path, const TriMesh& mesh, const WriteOptions& = {},
+                const Context& context = {});
 
 /// Writes poses of one mesh, each to its own file. The bytes that the files share are made once.
 /// Files may be written from several threads.
 class MeshFileWriter {
  public:
-  /// `extension` and `fields` are as in MeshWriteOptions. Throws std::invalid_argument if the
-  /// extension is not a mesh format, and MismatchError, which begins with `name`, for data that .om
-  /// cannot hold.
+  /// Writes files of the extension's format, such as ".ply". Throws std::invalid_argument if that
+  /// is not a mesh format, and MismatchError, which begins with `name`, for data that .om cannot
+  /// hold.
   MeshFileWriter(const Connectivity& connectivity, const std::string& extension,
                  bool double_precision = false, const std::vector<Field>& fields = {},
                  const std::string& name = "the mesh", const Context& context = {});

@@ -3,13 +3,14 @@
 #include <optional>
 #include <span>
 
+#include "toolkit/io/file_parameters.h"
 #include "toolkit/io/frame_files.h"
+#include "toolkit/io/frame_times.h"
 #include "toolkit/io/material_library.h"
-#include "toolkit/io/mesh_codecs.h"
+#include "toolkit/io/mesh_content.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/mesh_formats.h"
-#include "toolkit/io/sequence_format.h"
 #include "toolkit/io/sequence_parts.h"
+#include "toolkit/io/single_precision.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/io/written_files.h"
 #include "toolkit/mesh/errors.h"
@@ -101,13 +102,12 @@ KnownBeside known_of_folder(const std::vector<fs::path>& files, const MeshFileRe
 
 class FolderSink : public FrameSink {
  public:
-  FolderSink(const SequenceHeader& header, const fs::path& target,
-             const SequenceWriteOptions& options, const ExtraFiles& extra,
+  FolderSink(const SequenceHeader& header, const fs::path& target, const WriteOptions& options,
              const WrittenMaterials& materials, const Context& context)
       : header_(header),
         extent_(extent(header.rest)),
         target_(target),
-        extension_('.' + std::string(choice_name(options.format))),
+        extension_('.' + options.frame_format),
         outputs_(options.overwrite, options.inputs, options.together),
         folder_(outputs_.add(target, PendingOutput::Kind::folder)),
         writer_(*header.connectivity, extension_, options.double_precision, {}, target.string(),
@@ -123,7 +123,7 @@ class FolderSink : public FrameSink {
       files_.push_back(target_ / materials.name);
     }
     // A manifest may have megabytes, so it is written now and not kept.
-    for (const auto& [name, content] : extra) {
+    for (const auto& [name, content] : options.extra) {
       write_bytes(folder_ / name, content);
       files_.push_back(target_ / name);
     }
@@ -144,7 +144,7 @@ class FolderSink : public FrameSink {
     // A format without indices renumbers the vertices, so a rest pose in the old order would not
     // fit.
     SequenceHeader kept = header_;
-    kept.rest_is_known = kept.rest_is_known && mesh_codec(extension_)->read;
+    kept.rest_is_known = kept.rest_is_known && mesh_format(extension_)->parse_mesh;
     add_rest_beside(outputs_, target_, kept, files);
     add_times_beside(outputs_, target_, header_, files);
     outputs_.commit();
@@ -167,16 +167,16 @@ class FolderSink : public FrameSink {
 }  // namespace
 
 OpenSequence open_frames(const FrameSeries& series, const fs::path& folder,
-                         const SequenceSource& source, const Context& context) {
+                         const ReadOptions& options, const Context& context) {
   const std::vector<fs::path>& files = series.frames;
-  const std::vector<int> chosen = selected_frames(source.frames, static_cast<int>(files.size()));
+  const std::vector<int> chosen = selected_frames(options.frames, static_cast<int>(files.size()));
   OpenSequence open;
   open.notes = series.notes;
   for (const int frame : chosen) open.files.push_back(files[static_cast<std::size_t>(frame)]);
   std::vector<fs::path> frames = open.files;
   // If files do not index vertices, the first frame decides which corners are one vertex, whether
   // or not it is selected.
-  const bool names_vertices = mesh_codec(files[0].extension().string())->read;
+  const bool names_vertices = mesh_format(files[0].extension().string())->parse_mesh;
   auto reader =
       std::make_unique<const MeshFileReader>(names_vertices ? frames[0] : files[0], context);
   SequenceHeader header;
@@ -186,7 +186,7 @@ OpenSequence open_frames(const FrameSeries& series, const fs::path& folder,
                                             : known_beside(folder, count, *reader, open.files);
   const FrameTimes times =
       frame_times(folder.empty() ? files.front().parent_path().string() : folder.string(), count,
-                  std::move(known_times), source);
+                  std::move(known_times), options.fps);
   header.times = times.seconds(chosen);
   header.times_are_known = times.are_known;
   if (!rest && series.rest) {
@@ -203,35 +203,47 @@ OpenSequence open_frames(const FrameSeries& series, const fs::path& folder,
 }
 
 std::unique_ptr<FrameSink> begin_folder(const SequenceHeader& header, const fs::path& target,
-                                        const SequenceWriteOptions& options,
-                                        const ExtraFiles& extra, const Context& context) {
-  if (options.format != MeshFormat::obj || !header.connectivity->materials) {
-    return std::make_unique<FolderSink>(header, target, options, extra, WrittenMaterials(),
-                                        context);
+                                        const WriteOptions& options, const Context& context) {
+  const std::string extension = '.' + options.frame_format;
+  if (!is_mesh_extension(extension)) {
+    throw std::invalid_argument("option 'format': " + unknown_mesh_extension(extension));
+  }
+  if (extension != ".obj" || !header.connectivity->materials) {
+    return std::make_unique<FolderSink>(header, target, options, WrittenMaterials(), context);
   }
   const WrittenMaterials materials = materials_in_folder(*header.connectivity, target);
   SequenceHeader named = header;
   named.connectivity =
       std::make_shared<const Connectivity>(with_library(*header.connectivity, materials.name));
-  return std::make_unique<FolderSink>(named, target, options, extra, materials, context);
+  return std::make_unique<FolderSink>(named, target, options, materials, context);
 }
 
 namespace {
 
 /// Opens one mesh as a sequence of one frame.
-OpenSequence open_mesh(const fs::path& path, const SequenceSource& source, const Context& context) {
-  return open_frames({{path}}, {}, source, context);
+OpenSequence open_mesh(const fs::path& path, const ReadOptions& options, const Context& context) {
+  return open_frames({{path}}, {}, options, context);
+}
+
+/// Opens an OM mesh, whose properties may be fields.
+OpenSequence open_om(const fs::path& path, const ReadOptions& options, const Context& context) {
+  OpenSequence open = open_mesh(path, options, context);
+  if (!options.fields) return open;
+  FieldsRead read = read_om_fields(path, open.frames->connectivity(), context.part(1, 1));
+  open.fields = std::move(read.fields);
+  if (!read.left_out.empty()) {
+    open.notes.push_back(path.string() + ": its properties " + listed(read.left_out) +
+                         " hold no numbers of vertices or faces, and are left out");
+  }
+  return open;
 }
 
 class MeshSink : public FrameSink {
  public:
-  MeshSink(const SequenceHeader& header, const fs::path& target,
-           const SequenceWriteOptions& options, const ExtraFiles& extra)
+  MeshSink(const SequenceHeader& header, const fs::path& target, const WriteOptions& options)
       : header_(header),
         target_(target),
-        extra_(extra),
-        double_precision_(options.double_precision),
-        fields_(options.fields),
+        options_(options),
         outputs_(options.overwrite, options.inputs, options.together),
         path_(outputs_.add(target, PendingOutput::Kind::file)) {
     if (lower_extension(target) != ".obj" || !header.connectivity->materials) return;
@@ -247,17 +259,15 @@ class MeshSink : public FrameSink {
 
   void write(int, const Frames& poses) override {
     const PositionsView pose(poses.data(), header_.connectivity->vertices, 3);
-    const bool far_out = needs_double(pose, extent(header_.rest));
-    write_mesh(path_, pose, *header_.connectivity,
-               {.double_precision = double_precision_ || far_out,
-                .extension = target_.extension().string(),
-                .fields = fields_});
+    WriteOptions options = options_;
+    if (needs_double(pose, extent(header_.rest))) options.double_precision = true;
+    write_mesh(path_, pose, *header_.connectivity, options);
   }
 
   std::vector<fs::path> commit() override {
     std::vector<fs::path> files = {target_};
     if (!library_.empty()) files.push_back(library_);
-    add_extra_beside(outputs_, target_, extra_, files);
+    add_extra_beside(outputs_, target_, options_.extra, files);
     outputs_.commit();
     return files;
   }
@@ -265,9 +275,7 @@ class MeshSink : public FrameSink {
  private:
   SequenceHeader header_;
   fs::path target_;
-  ExtraFiles extra_;
-  bool double_precision_;
-  std::vector<Field> fields_;
+  WriteOptions options_;
   PendingOutputs outputs_;
   fs::path path_;
   /// Path of its material library; empty if none is written.
@@ -275,32 +283,109 @@ class MeshSink : public FrameSink {
 };
 
 std::unique_ptr<FrameSink> begin_mesh(const SequenceHeader& header, const fs::path& target,
-                                      const SequenceWriteOptions& options, const ExtraFiles& extra,
-                                      const Context&) {
+                                      const WriteOptions& options, const Context&) {
   if (header.times.size() != 1) {
     throw MismatchError(target.string() + ": one mesh file cannot hold " +
                         std::to_string(header.times.size()) +
                         " frames; name a folder, a .npy file, or one frame with option 'frames'");
   }
-  return std::make_unique<MeshSink>(header, target, options, extra);
+  return std::make_unique<MeshSink>(header, target, options);
+}
+
+using Texture = HeldParts::Texture;
+
+/// A format with what its files hold in a folder, with files beside it.
+Format format_of(const std::string& name, const HeldParts& in_folder) {
+  HeldParts holds = in_folder;
+  holds.rest = false;
+  holds.times = false;
+  return {.name = upper_case(name) + " mesh of one frame",
+          .extensions = {'.' + name},
+          .reading = reading_parameters(),
+          .writing = writing_parameters({"double"}),
+          .holds = [holds](const WriteOptions&) { return holds; },
+          .open = open_mesh,
+          .create = begin_mesh};
+}
+
+Format ply() {
+  Format format = format_of("ply", {.polygons = true, .texture = Texture::corners});
+  format.parse_mesh = read_ply;
+  format.further_reader = ply_further_reader;
+  format.mesh_frame = ply_frame;
+  return format;
+}
+
+Format obj() {
+  Format format = format_of("obj", {.polygons = true, .texture = Texture::corners, .groups = true});
+  format.parse_mesh = read_obj;
+  format.further_reader = obj_further_reader;
+  format.mesh_frame = obj_frame;
+  return format;
+}
+
+Format off() {
+  Format format = format_of("off", {.polygons = true});
+  format.parse_mesh = read_off;
+  format.further_reader = off_further_reader;
+  format.mesh_frame = off_frame;
+  return format;
+}
+
+Format stl() {
+  Format format = format_of("stl", {.vertex_order = false, .exact_positions = false});
+  format.mesh_frame = stl_frame;
+  return format;
+}
+
+Format om() {
+  Format format =
+      format_of("om", {.polygons = true, .texture = Texture::corners, .bare_faces = false});
+  format.open = open_om;
+  format.fields = true;
+  format.parse_mesh = read_om;
+  format.mesh_frame = om_frame;
+  return format;
 }
 
 }  // namespace
 
-SequenceFormat mesh_format(MeshFormat format) {
-  const std::string name(choice_name(format));
-  HeldParts holds = parts_held_by(format);
-  holds.rest = false;
-  holds.times = false;
-  return {upper_case(name) + " mesh of one frame",
-          {'.' + name},
-          false,
-          SequenceFormat::Precision::single_or_double,
-          open_mesh,
-          begin_mesh,
-          holds,
-          nullptr,
-          mesh_codec('.' + name)->fields};
+const std::vector<Format>& mesh_formats() {
+  static const std::vector<Format> formats = {ply(), obj(), off(), stl(), om()};
+  return formats;
+}
+
+const Format* mesh_format(const std::string& extension) {
+  const std::string wanted = lower_case(extension);
+  const auto found = std::ranges::find_if(
+      mesh_formats(), [&wanted](const Format& format) { return format.has(wanted); });
+  return found == mesh_formats().end() ? nullptr : &*found;
+}
+
+bool is_mesh_extension(const std::string& extension) {
+  return mesh_format(extension) != nullptr;
+}
+
+std::vector<std::string> mesh_extensions() {
+  std::vector<std::string> extensions;
+  for (const Format& format : mesh_formats()) extensions.push_back(format.extensions.front());
+  return extensions;
+}
+
+std::string unknown_mesh_extension(const std::string& extension) {
+  return (extension.empty() ? "has no extension" : "'" + extension + "' is no mesh format") +
+         "; expected " + joined(mesh_extensions(), ", ", " or ");
+}
+
+HeldParts held_in_folder(const std::string& extension) {
+  const Format* format = mesh_format(extension);
+  if (!format) throw std::invalid_argument(unknown_mesh_extension(extension));
+  HeldParts holds = format->holds({});
+  // Files beside the folder hold the rest pose and the times. A format without indices renumbers
+  // the vertices, so that a rest pose in the old order would not fit.
+  holds.rest = holds.vertex_order;
+  holds.times = true;
+  return holds;
 }
 
 }  // namespace mimetra

@@ -9,11 +9,12 @@
 #include "toolkit/io/array_file.h"
 #include "toolkit/io/binary_file.h"
 #include "toolkit/io/bytes.h"
-#include "toolkit/io/mesh_formats.h"
+#include "toolkit/io/file_parameters.h"
+#include "toolkit/io/frame_times.h"
 #include "toolkit/io/npy_array.h"
 #include "toolkit/io/pending_output.h"
-#include "toolkit/io/sequence_format.h"
 #include "toolkit/io/sequence_parts.h"
+#include "toolkit/io/single_precision.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/mesh/tri_mesh.h"
@@ -363,7 +364,7 @@ Positions rest_in(const std::string& name, const NumericArray& array, int vertic
   return Eigen::Map<const Positions>(array.values.data(), vertices, 3);
 }
 
-OpenSequence open_npz(const fs::path& path, const SequenceSource& source, const Context& context) {
+OpenSequence open_npz(const fs::path& path, const ReadOptions& options, const Context& context) {
   const NpzFile file(path);
   const std::string positions = file.find(kPositionNames);
   if (positions.empty()) {
@@ -374,7 +375,7 @@ OpenSequence open_npz(const fs::path& path, const SequenceSource& source, const 
   auto cache = open_npy_cache(file.named(positions), file.bytes(positions));
   PointCacheParts parts;
   parts.path = path;
-  if (const std::string faces = file.find(kFaceNames); !faces.empty() && !source.topology) {
+  if (const std::string faces = file.find(kFaceNames); !faces.empty() && !options.topology) {
     parts.faces = std::make_shared<const Connectivity>(
         faces_of(file.named(faces), file.array(faces), cache->vertices()));
   }
@@ -386,7 +387,7 @@ OpenSequence open_npz(const fs::path& path, const SequenceSource& source, const 
   if (const std::string rest = file.find(kRestNames); !rest.empty()) {
     parts.rest = rest_in(file.named(rest), file.array(rest), cache->vertices());
   }
-  return open_point_cache(std::move(cache), source, std::move(parts), context);
+  return open_point_cache(std::move(cache), options, std::move(parts), context);
 }
 
 template <typename Number>
@@ -434,8 +435,7 @@ struct FileBeside {
 /// after the other.
 class NpzSink : public FrameSink {
  public:
-  NpzSink(const SequenceHeader& header, const fs::path& target, const SequenceWriteOptions& options,
-          const ExtraFiles& extra)
+  NpzSink(const SequenceHeader& header, const fs::path& target, const WriteOptions& options)
       : header_(header),
         target_(target),
         outputs_(options.overwrite, options.inputs, options.together),
@@ -444,7 +444,7 @@ class NpzSink : public FrameSink {
         positions_(begin_npy_cache(scratch_.path, static_cast<std::size_t>(header.times.size()),
                                    static_cast<std::size_t>(header.connectivity->vertices),
                                    options.single_precision)) {
-    add_extra_beside(outputs_, target_, extra, extra_files_);
+    add_extra_beside(outputs_, target_, options.extra, extra_files_);
   }
 
   void write(int first, const Frames& poses) override {
@@ -492,21 +492,20 @@ class NpzSink : public FrameSink {
 };
 
 std::unique_ptr<FrameSink> begin_npz(const SequenceHeader& header, const fs::path& target,
-                                     const SequenceWriteOptions& options, const ExtraFiles& extra,
-                                     const Context&) {
-  return std::make_unique<NpzSink>(header, target, options, extra);
+                                     const WriteOptions& options, const Context&) {
+  return std::make_unique<NpzSink>(header, target, options);
 }
 
 }  // namespace
 
-SequenceFormat npz_format() {
-  return {"NumPy archive",
-          {".npz"},
-          true,
-          SequenceFormat::Precision::double_or_single,
-          open_npz,
-          begin_npz,
-          {.polygons = true}};
+Format npz_format() {
+  return {.name = "NumPy archive",
+          .extensions = {".npz"},
+          .reading = reading_parameters(),
+          .writing = writing_parameters({"single"}),
+          .holds = [](const WriteOptions&) { return HeldParts{.polygons = true}; },
+          .open = open_npz,
+          .create = begin_npz};
 }
 
 }  // namespace mimetra

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <climits>
 
-#include "toolkit/io/mesh_codecs.h"
+#include "toolkit/io/mesh_content.h"
 #include "toolkit/io/text_cursor.h"
 
 namespace mimetra {

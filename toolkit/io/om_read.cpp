@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "toolkit/io/bytes.h"
-#include "toolkit/io/mesh_codecs.h"
+#include "toolkit/io/mesh_content.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 

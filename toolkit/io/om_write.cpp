@@ -9,7 +9,7 @@
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
 
-#include "toolkit/io/mesh_codecs.h"
+#include "toolkit/io/mesh_content.h"
 #include "toolkit/mesh/openmesh.h"
 
 namespace mimetra {

@@ -1,9 +1,9 @@
 #include <cmath>
 
 #include "toolkit/io/bytes.h"
+#include "toolkit/io/file_parameters.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/point_cache.h"
-#include "toolkit/io/sequence_format.h"
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {
@@ -46,8 +46,8 @@ class Pc2File : public StoredPointCache {
   }
 };
 
-OpenSequence open_pc2(const fs::path& path, const SequenceSource& source, const Context& context) {
-  return open_point_cache(std::make_unique<const Pc2File>(path), source, {}, context);
+OpenSequence open_pc2(const fs::path& path, const ReadOptions& options, const Context& context) {
+  return open_point_cache(std::make_unique<const Pc2File>(path), options, {}, context);
 }
 
 /// Mean number of frames per second.
@@ -72,24 +72,25 @@ PointCacheTarget begin_pc2_file(const SequenceHeader& header, const fs::path& pa
 }
 
 std::unique_ptr<FrameSink> begin_pc2(const SequenceHeader& header, const fs::path& target,
-                                     const SequenceWriteOptions& options, const ExtraFiles& extra,
-                                     const Context&) {
-  return write_point_cache(header, target, options, extra,
+                                     const WriteOptions& options, const Context&) {
+  return write_point_cache(header, target, options,
                            [&](const fs::path& path) { return begin_pc2_file(header, path); });
-}
-
-/// PC2 stores a single step for all frames.
-HeldParts held_by_pc2() {
-  HeldParts held = parts_held_by(MeshFormat::ply);
-  held.uneven_times = false;
-  return held;
 }
 
 }  // namespace
 
-SequenceFormat pc2_format() {
-  return {"PC2 point cache", {".pc2"},  true,         SequenceFormat::Precision::single,
-          open_pc2,          begin_pc2, held_by_pc2()};
+Format pc2_format() {
+  return {.name = "PC2 point cache",
+          .extensions = {".pc2"},
+          .reading = reading_parameters(),
+          .holds =
+              [](const WriteOptions&) {
+                HeldParts held = held_in_folder(".ply");
+                held.uneven_times = false;  // a single step for all frames
+                return held;
+              },
+          .open = open_pc2,
+          .create = begin_pc2};
 }
 
 }  // namespace mimetra

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "toolkit/io/bytes.h"
-#include "toolkit/io/mesh_codecs.h"
+#include "toolkit/io/mesh_content.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/tri_mesh.h"
@@ -496,14 +496,14 @@ bool decode(const VertexBlock& block, const char* vertex, std::span<double> coor
 }
 
 /// Layout from the bytes before and after the vertices.
-class PlyLayout : public MeshLayout {
+class PlyLayout {
  public:
   PlyLayout(std::string first, std::size_t header_bytes, const VertexBlock& block)
       : block_(block),
         after_(first.substr(header_bytes + block.bytes)),
         before_(std::move(first.erase(header_bytes))) {}
 
-  bool read(std::string_view bytes, std::span<double> coordinates) const override {
+  bool read(std::string_view bytes, std::span<double> coordinates) const {
     if (bytes.size() != before_.size() + block_.bytes + after_.size()) return false;
     if (!bytes.starts_with(before_) || !bytes.ends_with(after_)) return false;
     const char* vertices = bytes.data() + before_.size();
@@ -512,18 +512,21 @@ class PlyLayout : public MeshLayout {
   }
 
  private:
-  const VertexBlock block_;
-  const std::string after_;
-  const std::string before_;
+  VertexBlock block_;
+  std::string after_;
+  std::string before_;
 };
 
 }  // namespace
 
-std::unique_ptr<const MeshLayout> ply_layout(std::string first, std::size_t, const Context&) {
+FurtherReader ply_further_reader(std::string first, std::size_t, const Context&) {
   const PlyHeader header = read_ply_header("", first);
   const std::optional<VertexBlock> block = block_of(header);
-  if (!block) return nullptr;
-  return std::make_unique<PlyLayout>(std::move(first), header.bytes, *block);
+  if (!block) return {};
+  return [layout = PlyLayout(std::move(first), header.bytes, *block)](
+             std::string_view bytes, std::span<double> coordinates) {
+    return layout.read(bytes, coordinates);
+  };
 }
 
 }  // namespace mimetra

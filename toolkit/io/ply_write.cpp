@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "toolkit/io/bytes.h"
-#include "toolkit/io/mesh_codecs.h"
+#include "toolkit/io/mesh_content.h"
 #include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {

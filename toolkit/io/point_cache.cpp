@@ -6,9 +6,10 @@
 
 #include "toolkit/io/bytes.h"
 #include "toolkit/io/frame_files.h"
+#include "toolkit/io/frame_times.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/mesh_formats.h"
 #include "toolkit/io/sequence_parts.h"
+#include "toolkit/io/single_precision.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/text.h"
@@ -94,11 +95,11 @@ std::string note_on_numbering(const fs::path& path, const FirstPose& first,
 
 /// Reads faces, and the rest pose if it is not known, from files beside a cache. Adds a note if
 /// they do not seem to fit the first pose.
-void add_parts_beside(const PointCache& cache, const FirstPose& first, const SequenceSource& source,
+void add_parts_beside(const PointCache& cache, const FirstPose& first, const ReadOptions& options,
                       PointCacheParts& parts, OpenSequence& open, const Context& context) {
   std::vector<fs::path>& files = open.files;
   const fs::path path = files.front();
-  files.push_back(topology_of(name_with(path, kTopologySuffix), source));
+  files.push_back(topology_of(name_with(path, kTopologySuffix), options));
   const MeshFileReader reader(files.back(), context);
   if (cache.vertices() != reader.mesh().connectivity.vertices) {
     throw MismatchError(path.string() + ": " + std::to_string(cache.vertices()) +
@@ -112,16 +113,17 @@ void add_parts_beside(const PointCache& cache, const FirstPose& first, const Seq
 }
 
 /// Times of all frames of the cache. Selected frames keep their time in the whole sequence.
-FrameTimes times_of(const PointCache& cache, const SequenceSource& source,
+FrameTimes times_of(const PointCache& cache, const ReadOptions& options,
                     std::optional<Eigen::VectorXd> known, std::vector<fs::path>& files) {
   if (!known && cache.times().size() > 0) known = cache.times();
   if (!known) {
     known = times_beside(name_with(files.front(), kTimesSuffix), cache.frames(), files);
   }
   const bool by_rate = !known;
-  FrameTimes times = frame_times(files.front().string(), cache.frames(), std::move(known), source);
+  FrameTimes times =
+      frame_times(files.front().string(), cache.frames(), std::move(known), options.fps);
   if (by_rate) {
-    const double frame = 1 / source.fps.value_or(kDefaultFramesPerSecond);
+    const double frame = 1 / options.fps.value_or(kDefaultFramesPerSecond);
     times.seconds = cache.start() * frame + cache.step() * times.seconds.array();
   }
   return times;
@@ -129,15 +131,14 @@ FrameTimes times_of(const PointCache& cache, const SequenceSource& source,
 
 class PointCacheSink : public FrameSink {
  public:
-  PointCacheSink(const SequenceHeader& header, const fs::path& target,
-                 const SequenceWriteOptions& options, const ExtraFiles& extra,
+  PointCacheSink(const SequenceHeader& header, const fs::path& target, const WriteOptions& options,
                  const std::function<PointCacheTarget(const fs::path&)>& begin)
       : header_(header),
         target_(target),
         outputs_(options.overwrite, options.inputs, options.together),
         cache_(begin(outputs_.add(target, PendingOutput::Kind::file))),
         columns_(3 * static_cast<std::size_t>(header.connectivity->vertices)) {
-    add_extra_beside(outputs_, target_, extra, extra_files_);
+    add_extra_beside(outputs_, target_, options.extra, extra_files_);
   }
 
   void write(int first, const Frames& poses) override {
@@ -255,31 +256,31 @@ void StoredPointCache::read_some_values(int first, VertexIndex vertex, FramesVie
   }
 }
 
-OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache, const SequenceSource& source,
+OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache, const ReadOptions& options,
                               PointCacheParts parts, const Context& context) {
   OpenSequence open;
   open.files = {parts.path.empty() ? cache->path() : parts.path};
-  const std::vector<int> chosen = selected_frames(source.frames, cache->frames());
+  const std::vector<int> chosen = selected_frames(options.frames, cache->frames());
   // Frames outside the selection are not read.
   FirstPose first{chosen.front(), {}};
   if (!parts.faces || !parts.rest) first.positions = pose_of(*cache, first.frame);
-  if (!parts.faces) add_parts_beside(*cache, first, source, parts, open, context);
+  if (!parts.faces) add_parts_beside(*cache, first, options, parts, open, context);
   SequenceHeader header;
   header.connectivity = std::move(parts.faces);
-  FrameTimes times = times_of(*cache, source, std::move(parts.times), open.files);
+  FrameTimes times = times_of(*cache, options, std::move(parts.times), open.files);
   header.times = std::move(times.seconds);
   header.times_are_known = times.are_known;
   header.rest_is_known = parts.rest.has_value();
   header.rest = parts.rest ? *std::move(parts.rest) : std::move(first.positions);
   open.frames = std::make_shared<const CachedFrames>(std::move(cache), std::move(header));
-  if (source.frames) open.frames = selected(open.frames, chosen);
+  if (options.frames) open.frames = selected(open.frames, chosen);
   return open;
 }
 
 std::unique_ptr<FrameSink> write_point_cache(
-    const SequenceHeader& header, const fs::path& target, const SequenceWriteOptions& options,
-    const ExtraFiles& extra, const std::function<PointCacheTarget(const fs::path&)>& begin) {
-  return std::make_unique<PointCacheSink>(header, target, options, extra, begin);
+    const SequenceHeader& header, const fs::path& target, const WriteOptions& options,
+    const std::function<PointCacheTarget(const fs::path&)>& begin) {
+  return std::make_unique<PointCacheSink>(header, target, options, begin);
 }
 
 }  // namespace mimetra

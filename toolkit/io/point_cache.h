@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "toolkit/io/binary_file.h"
-#include "toolkit/io/sequence_format.h"
+#include "toolkit/io/format.h"
 #include "toolkit/mesh/context.h"
 
 /// Files with positions over time, without faces. Internal to their formats.
@@ -98,7 +98,7 @@ struct PointCacheParts {
 /// Opens the frames that `source` selects. If the file has no faces, they come from
 /// `source.topology` or from NAME.topology.ply beside it, and the rest pose from NAME.rest.ply.
 /// Throws IoError, MismatchError, Cancelled.
-OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache, const SequenceSource& source,
+OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache, const ReadOptions& options,
                               PointCacheParts parts = {}, const Context& context = {});
 
 /// Destination of a cache's frames.
@@ -116,8 +116,7 @@ struct PointCacheTarget {
 /// are known. `begin` makes the file at a path. Throws OutputError, and MismatchError for poses too
 /// far from the origin for the format's precision.
 std::unique_ptr<FrameSink> write_point_cache(
-    const SequenceHeader& header, const std::filesystem::path& target,
-    const SequenceWriteOptions& options, const ExtraFiles& extra,
+    const SequenceHeader& header, const std::filesystem::path& target, const WriteOptions& options,
     const std::function<PointCacheTarget(const std::filesystem::path&)>& begin);
 
 }  // namespace mimetra

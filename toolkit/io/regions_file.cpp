@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/json_text.h"
-#include "toolkit/io/mesh_codecs.h"
+#include "toolkit/io/mesh_content.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/painting_file.h"
 #include "toolkit/io/text_cursor.h"

@@ -1,9 +1,10 @@
 #include "toolkit/io/sequence_parts.h"
 
+#include <string_view>
+
 #include "toolkit/io/csv.h"
 #include "toolkit/io/frame_files.h"
-#include "toolkit/io/model_file.h"
-#include "toolkit/io/scene.h"
+#include "toolkit/io/frame_times.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/io/weight_file.h"
 #include "toolkit/io/whole_file.h"
@@ -27,38 +28,25 @@ void add_pose(PendingOutputs& outputs, const fs::path& sequence, const std::stri
   write_mesh(outputs.add(target, PendingOutput::Kind::file, PendingOutputs::Existing::same,
                          other_of_name(sequence)),
              {header.rest.data(), header.rest.rows(), 3}, *header.connectivity,
-             {.double_precision = true, .extension = ".ply"});
+             {.double_precision = true});
   files.push_back(target);
 }
 
 }  // namespace
 
-FrameTimes frame_times(const std::string& name, int frames, std::optional<Eigen::VectorXd> known,
-                       const SequenceSource& source) {
-  if (!known) {
-    const double fps = source.fps.value_or(kDefaultFramesPerSecond);
-    return {Eigen::VectorXd::LinSpaced(frames, 0, frames - 1) / fps, source.fps.has_value()};
-  }
-  check_rate(name, *known, source);
-  return {*std::move(known), true};
-}
-
 fs::path other_of_name(const fs::path& sequence) {
   const fs::path name = beside(sequence, ""), own = sequence.lexically_normal();
   std::vector<fs::path> others;
   if (is_there(name / kFolderManifest) && own != name && own != name / "") others.push_back(name);
-  for (const SequenceFormat& format : sequence_formats()) {
-    if (!format.has_companions) continue;
-    for (const std::string& extension : format.extensions) {
-      const fs::path other = name.string() + extension;
-      if (other != own && is_there(other)) others.push_back(other);
-    }
+  for (const std::string_view extension : kExtensionsWithCompanions) {
+    const fs::path other = name.string() + std::string(extension);
+    if (other != own && is_there(other)) others.push_back(other);
   }
   return others.empty() ? fs::path() : others.front();
 }
 
-fs::path topology_of(const fs::path& path, const SequenceSource& source) {
-  if (source.topology) return *source.topology;
+fs::path topology_of(const fs::path& path, const ReadOptions& options) {
+  if (options.topology) return *options.topology;
   const fs::path topology = beside(path, kTopologySuffix);
   if (!is_there(topology)) {
     throw IoError(path.string(), "says nothing of faces and there is no " + topology.string() +
@@ -157,8 +145,8 @@ std::vector<std::string> match_notes(const fs::path& weights, const fs::path& mo
 
 /// Sequence of one frame with all weights at 0.
 std::shared_ptr<const FrameSource> resting(std::shared_ptr<const BlendshapeModel> model,
-                                           const SequenceSource& source) {
-  selected_frames(source.frames, 1);
+                                           const ReadOptions& options) {
+  selected_frames(options.frames, 1);
   const int expressions = model->expressions().size();
   return std::make_shared<const Animation>(std::move(model), Eigen::MatrixXd::Zero(1, expressions));
 }
@@ -175,38 +163,38 @@ Eigen::MatrixXd weights_of(const fs::path& path, const WeightTrack& track,
 }  // namespace
 
 OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path& path,
-                   const SequenceSource& source) {
-  if (source.weights) {
-    WeightTrack track = read_weights(*source.weights);
-    scale_weights(source.weights->string(), track, model->expressions().names, source.weight_scale);
-    return drive(std::move(model), path, source, *source.weights, std::move(track));
+                   const ReadOptions& options) {
+  if (options.weights) {
+    WeightTrack track = read_weights(*options.weights);
+    scale_weights(options.weights->string(), track, model->expressions().names,
+                  options.weight_scale);
+    return drive(std::move(model), path, options, *options.weights, std::move(track));
   }
-  return {resting(std::move(model), source), true, {path}, {}};
+  return {resting(std::move(model), options), true, {path}, {}};
 }
 
 OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path& path,
-                   const SequenceSource& source, const fs::path& driver, WeightTrack track) {
+                   const ReadOptions& options, const fs::path& driver, WeightTrack track) {
   OpenSequence open;
   open.model_driven = true;
   open.files = {path, driver};
   const auto frames = static_cast<int>(track.weights.rows());
-  const std::vector<int> chosen = selected_frames(source.frames, frames);
+  const std::vector<int> chosen = selected_frames(options.frames, frames);
   const std::vector<std::string>& expressions = model->expressions().names;
   if (expressions.empty()) {
-    const std::vector<std::string> unread = notes_on_unread(path);
-    throw MismatchError(driver.string() + ": drives nothing; " +
-                        (unread.empty() ? path.string() + ": has no expressions" : unread[0]));
+    throw MismatchError(driver.string() + ": drives nothing; " + path.string() +
+                        " has no expressions");
   }
   for (const std::string& note : track.notes) open.notes.push_back(driver.string() + ": " + note);
   const auto unmatched = match_notes(driver, path, match_weights(track, expressions));
   open.notes.insert(open.notes.end(), unmatched.begin(), unmatched.end());
   std::optional<Eigen::VectorXd> of_track;
   if (track.times.size() > 0) of_track = track.times;
-  FrameTimes times = frame_times(driver.string(), frames, std::move(of_track), source);
+  FrameTimes times = frame_times(driver.string(), frames, std::move(of_track), options.fps);
   if (track.times.size() == 0 && track.step != 1) {
     times.seconds *= track.step;
     times.are_known = true;
-    if (!source.fps) {
+    if (!options.fps) {
       open.notes.push_back(driver.string() + ": rows are " + readable(track.step) +
                            " frames apart, of which " + readable(kDefaultFramesPerSecond) +
                            " a second are assumed; option 'fps' gives the rate");
@@ -222,36 +210,6 @@ OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path&
   track.weights.resize(0, 0);
   open.frames = std::make_shared<const Animation>(std::move(model), std::move(weights),
                                                   times.seconds(chosen), times.are_known);
-  return open;
-}
-
-OpenSequence open_scene(const fs::path& path, const SequenceSource& source,
-                        const Context& context) {
-  Scene scene = read_gltf(path, context);
-  const auto frames = static_cast<int>(scene.weights.rows());
-  OpenSequence open;
-  if (source.weights || frames == 0) {
-    open = drive(scene.model, path, source);
-  } else {
-    const std::vector<int> chosen = selected_frames(source.frames, frames);
-    std::optional<Eigen::VectorXd> of_scene;
-    if (scene.times.size() > 0) of_scene = scene.times;
-    const FrameTimes times = frame_times(path.string(), frames, std::move(of_scene), source);
-    open.model_driven = true;
-    open.frames = std::make_shared<const Animation>(
-        scene.performer, Eigen::MatrixXd(scene.weights(chosen, Eigen::all)), times.seconds(chosen),
-        times.are_known);
-  }
-  if (!scene.rest_is_known && !source.weights) {
-    open.frames = with_rest(open.frames, std::nullopt);
-    open.model_driven = false;
-  }
-  open.files = scene.files;
-  if (source.weights) open.files.push_back(*source.weights);
-  std::vector<std::string>& notes = scene.notes;
-  const auto& of_use = source.weights ? scene.model_notes : scene.motion_notes;
-  notes.insert(notes.end(), of_use.begin(), of_use.end());
-  open.notes.insert(open.notes.begin(), notes.begin(), notes.end());
   return open;
 }
 

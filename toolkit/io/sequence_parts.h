@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "toolkit/io/format.h"
 #include "toolkit/io/frame_series.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/pending_output.h"
-#include "toolkit/io/sequence_format.h"
 #include "toolkit/io/weight_track.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/model/blendshape_model.h"
@@ -18,24 +18,13 @@
 /// and models driven by weights. For code that opens and writes sequences.
 namespace mimetra {
 
-/// Seconds of a sequence's frames (F), and whether a file or the user gave them.
-struct FrameTimes {
-  Eigen::VectorXd seconds;
-  bool are_known;
-};
-
-/// Times of `name`: `known` if given, else from `source.fps` or the default rate. Throws
-/// std::invalid_argument if both are given.
-FrameTimes frame_times(const std::string& name, int frames, std::optional<Eigen::VectorXd> known,
-                       const SequenceSource& source);
-
 /// Another sequence with the same name, to which the files beside `sequence` belong; empty if there
 /// is none.
 std::filesystem::path other_of_name(const std::filesystem::path& sequence);
 
 /// Path of the mesh file with the faces of `path`, which stores none itself. Throws IoError if
 /// there is none.
-std::filesystem::path topology_of(const std::filesystem::path& path, const SequenceSource& source);
+std::filesystem::path topology_of(const std::filesystem::path& path, const ReadOptions& options);
 
 /// Reads the rest pose beside a sequence and adds its file to `files`; none if it does not exist.
 std::optional<Positions> rest_beside(const std::filesystem::path& sequence,
@@ -58,31 +47,25 @@ void add_times_beside(PendingOutputs& outputs, const std::filesystem::path& sequ
 void add_extra_beside(PendingOutputs& outputs, const std::filesystem::path& target,
                       const ExtraFiles& extra, std::vector<std::filesystem::path>& files);
 
-/// Opens the frames of `series` that `source` selects. `folder` is the folder whose companions are
+/// Opens the frames of `series` that `options` selects. `folder` is the folder whose companions are
 /// read, and is empty for patterns and single files. A rest pose beside the folder precedes the
 /// series' own. Throws IoError, MismatchError, Cancelled.
 OpenSequence open_frames(const FrameSeries& series, const std::filesystem::path& folder,
-                         const SequenceSource& source, const Context& context = {});
+                         const ReadOptions& options, const Context& context = {});
 
 /// Begins a folder of numbered files. Throws OutputError, Cancelled.
 std::unique_ptr<FrameSink> begin_folder(const SequenceHeader& header,
                                         const std::filesystem::path& target,
-                                        const SequenceWriteOptions& options,
-                                        const ExtraFiles& extra, const Context& context = {});
+                                        const WriteOptions& options, const Context& context = {});
 
-/// Sequence of the model from `path`, driven by `source.weights`; without weights, its neutral.
+/// Sequence of the model from `path`, driven by `options.weights`; without weights, its neutral.
 /// Throws IoError, and MismatchError if no weight matches an expression.
 OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const std::filesystem::path& path,
-                   const SequenceSource& source);
+                   const ReadOptions& options);
 
 /// Sequence of the model driven by a track that was read from `driver`. Throws MismatchError.
 OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const std::filesystem::path& path,
-                   const SequenceSource& source, const std::filesystem::path& driver,
+                   const ReadOptions& options, const std::filesystem::path& driver,
                    WeightTrack track);
-
-/// Opens a scene file. Its model is driven by `source.weights`, else by the file's own weights;
-/// without either it is the neutral. Throws IoError, MismatchError, Cancelled.
-OpenSequence open_scene(const std::filesystem::path& path, const SequenceSource& source,
-                        const Context& context = {});
 
 }  // namespace mimetra

@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 
 #include "toolkit/io/bytes.h"
-#include "toolkit/io/mesh_codecs.h"
+#include "toolkit/io/mesh_content.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/mesh/errors.h"
 

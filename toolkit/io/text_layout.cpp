@@ -1,9 +1,10 @@
 #include <charconv>
 #include <cstring>
+#include <memory>
 #include <utility>
 #include <vector>
 
-#include "toolkit/io/mesh_codecs.h"
+#include "toolkit/io/mesh_content.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/mesh/tri_mesh.h"
 
@@ -69,7 +70,7 @@ Line kind_of(const char* at, const char* end) {
 }
 
 /// Runs of f and vt lines. Between them are vertices, and lines that do not affect faces.
-class ObjLayout : public MeshLayout {
+class ObjLayout {
  public:
   ObjLayout(std::string first, const Context& context) : first_(std::move(first)) {
     const std::string_view text = without_byte_order_mark(first_);
@@ -91,7 +92,7 @@ class ObjLayout : public MeshLayout {
     }
   }
 
-  bool read(std::string_view bytes, std::span<double> coordinates) const override {
+  bool read(std::string_view bytes, std::span<double> coordinates) const {
     const std::string_view text = without_byte_order_mark(bytes);
     const char *at = text.data(), *end = at + text.size();
     const std::size_t vertices = coordinates.size() / 3;
@@ -140,7 +141,7 @@ class ObjLayout : public MeshLayout {
 };
 
 /// Layout from the bytes before and after the lines of the vertices.
-class OffLayout : public MeshLayout {
+class OffLayout {
  public:
   /// `start` is the offset of the vertices' lines.
   OffLayout(std::string first, std::size_t start) : first_(std::move(first)), start_(start) {}
@@ -153,7 +154,7 @@ class OffLayout : public MeshLayout {
     return behind != nullptr;
   }
 
-  bool read(std::string_view bytes, std::span<double> coordinates) const override {
+  bool read(std::string_view bytes, std::span<double> coordinates) const {
     if (bytes.size() < start_ || std::memcmp(bytes.data(), first_.data(), start_) != 0) {
       return false;
     }
@@ -177,24 +178,27 @@ class OffLayout : public MeshLayout {
 
 }  // namespace
 
-std::unique_ptr<const MeshLayout> obj_layout(std::string first, std::size_t,
-                                             const Context& context) {
-  if (may_continue(first)) return nullptr;
-  return std::make_unique<ObjLayout>(std::move(first), context);
+FurtherReader obj_further_reader(std::string first, std::size_t, const Context& context) {
+  if (may_continue(first)) return {};
+  return [layout = std::make_shared<const ObjLayout>(std::move(first), context)](
+             std::string_view bytes, std::span<double> coordinates) {
+    return layout->read(bytes, coordinates);
+  };
 }
 
-std::unique_ptr<const MeshLayout> off_layout(std::string first, std::size_t vertices,
-                                             const Context&) {
+FurtherReader off_further_reader(std::string first, std::size_t vertices, const Context&) {
   // Skip the keyword and the counts, which comments may interrupt, up to the end of their line.
   const std::string unnamed;
   TextCursor cursor(unnamed, without_byte_order_mark(first), {.comments = true});
   for (int word = 0; word < 3; ++word) cursor.word_anywhere();
   cursor.next_line();
   const std::size_t start = first.size() - cursor.left();
-  auto layout = std::make_unique<OffLayout>(std::move(first), start);
+  const auto layout = std::make_shared<OffLayout>(std::move(first), start);
   std::vector<double> coordinates(3 * vertices);
-  if (!layout->learn(coordinates)) return nullptr;
-  return layout;
+  if (!layout->learn(coordinates)) return {};
+  return [layout](std::string_view bytes, std::span<double> further) {
+    return layout->read(bytes, further);
+  };
 }
 
 }  // namespace mimetra

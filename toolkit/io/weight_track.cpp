@@ -5,7 +5,7 @@
 #include <iterator>
 #include <map>
 
-#include "toolkit/io/sequence_format.h"
+#include "toolkit/io/frame_times.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/expression_names.h"

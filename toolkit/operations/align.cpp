@@ -5,11 +5,11 @@
 
 #include "toolkit/io/json_text.h"
 #include "toolkit/mesh/alignment.h"
+#include "toolkit/mesh/bound_parameters.h"
 #include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/mesh/whole_motion.h"
-#include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/parameter_files.h"
 #include "toolkit/operations/reports.h"
 #include "toolkit/operations/toolkit_operations.h"

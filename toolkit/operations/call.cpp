@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "toolkit/io/model_file.h"
+#include "toolkit/formats/model_file.h"
+#include "toolkit/formats/sequence_file.h"
+#include "toolkit/io/file_parameters.h"
 #include "toolkit/io/pending_output.h"
-#include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/stopwatch.h"
@@ -44,13 +45,15 @@ class Loader {
       throw UsageError(text + ": regions speak of a mesh, and no input has one");
     }
     const Parameters as_it_is(parameters_.declared());
-    const ReadRequest request{.parameters = input.shape ? as_it_is : parameters_,
-                              .fields = input.fields,
-                              .identities = input.identities,
-                              .may_stream = may_stream_ && input.streamed,
-                              .vertices = vertices_,
-                              .triangles = &triangles_};
-    ReadValue read = format.read(text, request, context);
+    ReadOptions options = read_options(format.reading, input.shape ? as_it_is : parameters_);
+    options.fields = input.fields;
+    options.identities = input.identities;
+    options.vertices = vertices_;
+    options.triangles = &triangles_;
+    const bool streams = may_stream_ && input.streamed;
+    ReadValue read = format.read(text, options, streams ? context : context.part(0, 0));
+    if (!streams) read.value.data = in_memory(std::move(read.value.data), context);
+    context.report(1);
     for (const std::string& note : read.notes) {
       if (log_) log_(LogLevel::warning, note);
     }
@@ -535,26 +538,28 @@ void Call::write_values(const Output& output, const Paths& targets, const std::s
   for (std::size_t i = 0; i < made->second.size(); ++i) {
     const auto& target = targets.at(i);
     // A folder's name may contain a dot, so it ends in a slash.
-    WriteRequest write{is_folder ? target / "" : target, request_.parameters, asked.overwrite};
-    write.inputs = inputs_that_stay();
-    write.together = &together;
+    const std::filesystem::path path = is_folder ? target / "" : target;
+    WriteOptions options = write_options(format.writing, request_.parameters);
+    options.overwrite = asked.overwrite;
+    options.inputs = inputs_that_stay();
+    options.together = &together;
     // The main output's manifest covers its companions.
     if (request_.destinations.contains(output.name)) {
-      write.extra.emplace_back(manifest_name(target, is_folder), manifest);
+      options.extra.emplace_back(manifest_name(target, is_folder), manifest);
     }
     for (const auto& [ending, text] : made->second[i].beside) {
       const std::string name = is_folder ? ending.substr(1) : target.stem().string() + ending;
-      write.extra.emplace_back(name, text);
+      options.extra.emplace_back(name, text);
     }
     const NamedData& value = made->second[i];
     const double done = static_cast<double>(i);
     const Context of_value = context.part(done / count, (done + 1) / count);
     if (format.fields && !value.more_fields.empty()) {
-      format.write(with_more_fields(value), write, of_value);
+      format.write(with_more_fields(value), path, options, of_value);
     } else {
-      format.write(value.data, write, of_value);
+      format.write(value.data, path, options, of_value);
     }
-    for (const std::string& note : notes_on_losses(format, value.data, write)) {
+    for (const std::string& note : notes_on_losses(format, value.data, path, options)) {
       if (request_.log) request_.log(LogLevel::warning, note);
     }
   }

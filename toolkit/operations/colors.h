@@ -2,9 +2,9 @@
 
 #include <vector>
 
+#include "toolkit/io/image.h"
 #include "toolkit/mesh/fields.h"
 #include "toolkit/mesh/tri_mesh.h"
-#include "toolkit/operations/image.h"
 
 namespace mimetra {
 

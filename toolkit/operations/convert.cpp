@@ -3,14 +3,14 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/correspondence/renumbering.h"
+#include "toolkit/formats/gltf/scene.h"
+#include "toolkit/io/format.h"
 #include "toolkit/io/json_text.h"
-#include "toolkit/io/mesh_formats.h"
-#include "toolkit/io/scene.h"
+#include "toolkit/mesh/bound_parameters.h"
 #include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/mesh/tri_mesh.h"
 #include "toolkit/model/animation.h"
-#include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/reports.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/operations/weight_tables.h"

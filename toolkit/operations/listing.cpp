@@ -40,7 +40,7 @@ std::vector<std::string> option_words(const std::vector<Parameter>& parameters) 
 /// Describes what the files of a format store by default; "" if that is unknown.
 std::string held_by(const Format& format) {
   if (!format.write) return "";
-  std::string words = format.holds ? description(format.holds(Parameters(format.writing))) : "";
+  std::string words = format.holds ? description(format.holds({})) : "";
   if (format.fields) words += words.empty() ? "fields" : ", fields";
   return words;
 }

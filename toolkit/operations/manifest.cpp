@@ -10,8 +10,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/formats/model_file.h"
 #include "toolkit/io/json_text.h"
-#include "toolkit/io/model_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 

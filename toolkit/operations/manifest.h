@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "toolkit/io/written_files.h"
-#include "toolkit/operations/parameter.h"
+#include "toolkit/mesh/parameter.h"
 
 namespace mimetra {
 

@@ -5,8 +5,8 @@
 #include "toolkit/correspondence/automatic_markers.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/io/marker_file.h"
+#include "toolkit/mesh/bound_parameters.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/match_parameters.h"
 #include "toolkit/operations/operation.h"
 

@@ -4,13 +4,13 @@
 #include <memory>
 #include <utility>
 
+#include "toolkit/formats/model_file.h"
 #include "toolkit/io/correspondence_file.h"
 #include "toolkit/io/landmark_vertices.h"
 #include "toolkit/io/marker_file.h"
-#include "toolkit/io/model_file.h"
 #include "toolkit/io/rules_file.h"
+#include "toolkit/mesh/bound_parameters.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/option_words.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/reports.h"

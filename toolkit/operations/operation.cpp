@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/io/pending_output.h"
@@ -144,6 +145,8 @@ void OperationTable::add(Operation operation) {
 }
 
 void OperationTable::add(Format format) {
+  if (format.open) format.read = read_sequence_value;
+  if (format.create) format.write = write_sequence_value;
   for (const Format& known : formats_) {
     const bool clashes =
         known.kind == format.kind && ((known.read && format.read) || (known.write && format.write));

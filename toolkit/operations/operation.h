@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "toolkit/correspondence/landmark_finder.h"
+#include "toolkit/io/data.h"
+#include "toolkit/io/format.h"
 #include "toolkit/mesh/context.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/operations/data.h"
-#include "toolkit/operations/format.h"
+#include "toolkit/mesh/parameter.h"
 #include "toolkit/operations/manifest.h"
-#include "toolkit/operations/parameter.h"
 
 namespace mimetra {
 

@@ -6,7 +6,7 @@
 
 #include "toolkit/mesh/alignment.h"
 #include "toolkit/mesh/fields.h"
-#include "toolkit/operations/parameter.h"
+#include "toolkit/mesh/parameter.h"
 
 namespace mimetra {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "toolkit/operations/bound_parameters.h"
+#include "toolkit/mesh/bound_parameters.h"
 #include "toolkit/operations/operation.h"
 #include "toolkit/pipeline/transfer.h"
 #include "toolkit/splocs/decomposition_plan.h"

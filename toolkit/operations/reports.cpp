@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "toolkit/io/mesh_formats.h"
-#include "toolkit/io/scene.h"
+#include "toolkit/formats/gltf/scene.h"
+#include "toolkit/io/format.h"
 #include "toolkit/io/weight_file.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/animation.h"

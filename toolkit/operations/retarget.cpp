@@ -4,7 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/correspondence_file.h"
+#include "toolkit/io/file_parameters.h"
 #include "toolkit/io/frame_files.h"
+#include "toolkit/io/frame_times.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/io/retargeting_file.h"
 #include "toolkit/io/weight_file.h"
@@ -15,7 +17,6 @@
 #include "toolkit/operations/option_words.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/reports.h"
-#include "toolkit/operations/sequence_parameters.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/operations/weight_tables.h"
 #include "toolkit/pipeline/retarget.h"
@@ -61,19 +62,18 @@ std::vector<Exclusion> retarget_exclusions() {
 }
 
 /// --frames, --fps and --weight-scale.
-BoundParameters<SequenceSource> driving_parameters() {
-  BoundParameters<SequenceSource> list = frame_parameters();
-  return list.add(weight_scale_parameter());
+std::vector<Parameter> driving_parameters() {
+  return reading_parameters({"frames", "fps", "weight-scale"});
 }
 
 /// Returns the weights that drive `expressions`, and their times, in the selected frames.
 WeightTrack chosen_track(const Invocation& invocation,
                          const std::vector<std::string>& expressions) {
-  const SequenceSource source = driving_parameters().read(invocation.parameters);
+  const ReadOptions options = read_options(driving_parameters(), invocation.parameters);
   const NamedData& weights = invocation.input("weights");
   WeightTrack track = track_of(std::get<Table>(weights.data));
   const std::string name = weights.name.empty() ? "weights" : weights.name;
-  scale_weights(name, track, expressions, source.weight_scale);
+  scale_weights(name, track, expressions, options.weight_scale);
   note_odd_times(track);
   for (const std::string& note : track.notes) {
     const std::string text = name + ": " + note;
@@ -83,11 +83,11 @@ WeightTrack chosen_track(const Invocation& invocation,
   }
   const auto frames = static_cast<int>(track.weights.rows());
   if (track.times.size() > 0) {
-    check_rate(weights.name, track.times, source);
-  } else if (source.fps) {
-    track.times = Eigen::VectorXd::LinSpaced(frames, 0, frames - 1) / *source.fps;
+    check_rate(weights.name, track.times, options.fps);
+  } else if (options.fps) {
+    track.times = Eigen::VectorXd::LinSpaced(frames, 0, frames - 1) / *options.fps;
   }
-  const std::vector<int> chosen = selected_frames(source.frames, frames);
+  const std::vector<int> chosen = selected_frames(options.frames, frames);
   track.weights = Eigen::MatrixXd(track.weights(chosen, Eigen::all));
   if (track.times.size() > 0) track.times = Eigen::VectorXd(track.times(chosen));
   return track;
@@ -430,7 +430,7 @@ Operation declared_operation() {
 Operation retarget_operation() {
   Operation operation = declared_operation();
   operation.parameters = concatenated<Parameter>(
-      {retarget_parameters().declared(), match_parameters(), driving_parameters().declared()});
+      {retarget_parameters().declared(), match_parameters(), driving_parameters()});
   operation.exclusions = retarget_exclusions();
   operation.examples = {
       "retarget actor/ double.glb --weights talk.csv -o talk_double.csv --map-out map.json",

@@ -2,10 +2,10 @@
 
 #include "toolkit/correspondence/renumbering.h"
 #include "toolkit/io/json_text.h"
+#include "toolkit/mesh/bound_parameters.h"
 #include "toolkit/mesh/simplification.h"
 #include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/reports.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/pipeline/measure.h"

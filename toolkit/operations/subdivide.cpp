@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/json_text.h"
+#include "toolkit/mesh/bound_parameters.h"
 #include "toolkit/mesh/subdivision.h"
-#include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/reports.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/pipeline/measure.h"

@@ -1,12 +1,12 @@
 #include "toolkit/operations/toolkit_operations.h"
 
-#include "toolkit/operations/format.h"
+#include "toolkit/formats/formats.h"
 #include "toolkit/operations/weight_tables.h"
 
 namespace mimetra {
 
 void add_toolkit(OperationTable& table) {
-  add_formats(table);
+  for (const Format& format : formats()) table.add(format);
   add_weight_formats(table);
   table.add(info_operation());
   table.add(check_operation());

@@ -19,7 +19,4 @@ Operation simplify_operation();
 Operation subdivide_operation();
 Operation retarget_operation();
 
-/// Adds the formats of io except tables (weight_tables.h).
-void add_formats(OperationTable& table);
-
 }  // namespace mimetra

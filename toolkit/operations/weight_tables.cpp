@@ -16,14 +16,14 @@ namespace {
 constexpr const char* kTimeColumn = "time";
 constexpr const char* kLiveLink = ".livelink.csv";
 
-using Paths = std::vector<std::filesystem::path>;
+using Paths = Format::Paths;
 
 /// Whether a path is in Live Link Face's format.
 bool is_live_link(const std::filesystem::path& path) {
   return lower_case(path.filename().string()).ends_with(kLiveLink);
 }
 
-ReadValue read_weight_table(const std::string& text, const ReadRequest&, const Context&) {
+ReadValue read_weight_table(const std::string& text, const ReadOptions&, const Context&) {
   const WeightTrack track = read_weights(text);
   ReadValue read{{text, weight_table(track)}, {text}};
   for (const std::string& note : track.notes) read.notes.push_back(text + ": " + note);
@@ -56,8 +56,9 @@ LiveLinkText live_link_of(const Data& data, const std::filesystem::path& target)
   }
 }
 
-Paths write_live_link(const Data& data, const WriteRequest& request, const Context&) {
-  return write_text(request, live_link_of(data, request.target).text);
+Paths write_live_link(const Data& data, const std::filesystem::path& target,
+                      const WriteOptions& options, const Context&) {
+  return write_text(target, options, live_link_of(data, target).text);
 }
 
 std::vector<std::string> live_link_losses(const Data& data, const std::filesystem::path& target) {
@@ -78,12 +79,13 @@ void check_names(const Table& weights, bool timed, const std::filesystem::path& 
 
 /// Writes a table, or a sequence's weights as a table.
 template <std::string (Table::*Text)() const>
-Paths write_table(const Data& data, const WriteRequest& request, const Context&) {
+Paths write_table(const Data& data, const std::filesystem::path& target,
+                  const WriteOptions& options, const Context&) {
   const auto* given = std::get_if<Table>(&data);
-  const Table table = given ? *given : weight_table(track_of(data, request.target));
+  const Table table = given ? *given : weight_table(track_of(data, target));
   const bool timed = !table.columns.empty() && table.columns.front() == kTimeColumn;
-  if (timed || !given) check_names(table, timed, request.target);
-  return write_text(request, (table.*Text)());
+  if (timed || !given) check_names(table, timed, target);
+  return write_text(target, options, (table.*Text)());
 }
 
 }  // namespace

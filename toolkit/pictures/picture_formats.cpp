@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/format.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/io/pending_output.h"
@@ -11,7 +12,6 @@
 #include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/format.h"
 #include "toolkit/pictures/film_strip.h"
 #include "toolkit/pictures/table_chart.h"
 
@@ -152,29 +152,29 @@ Operation render_operation() {
   return operation;
 }
 
-std::vector<std::filesystem::path> write_picture(const Data& data, const WriteRequest& request,
-                                                 const Context&) {
-  return write_text(request, png_of(std::get<Pictures>(data).draw(0)));
+Format::Paths write_picture(const Data& data, const std::filesystem::path& target,
+                            const WriteOptions& options, const Context&) {
+  return write_text(target, options, png_of(std::get<Pictures>(data).draw(0)));
 }
 
-std::vector<std::filesystem::path> write_table(const Data& data, const WriteRequest& request,
-                                               const Context&) {
-  return write_text(request, png_of(draw({chart_of(std::get<Table>(data))})));
+Format::Paths write_table(const Data& data, const std::filesystem::path& target,
+                          const WriteOptions& options, const Context&) {
+  return write_text(target, options, png_of(draw({chart_of(std::get<Table>(data))})));
 }
 
-std::vector<std::filesystem::path> write_pictures(const Data& data, const WriteRequest& request,
-                                                  const Context& context) {
+Format::Paths write_pictures(const Data& data, const std::filesystem::path& target,
+                             const WriteOptions& options, const Context& context) {
   const auto& pictures = std::get<Pictures>(data);
-  PendingOutputs outputs(request.overwrite, request.inputs, request.together);
-  const std::filesystem::path folder = outputs.add(request.target, PendingOutput::Kind::folder);
+  PendingOutputs outputs(options.overwrite, options.inputs, options.together);
+  const std::filesystem::path folder = outputs.add(target, PendingOutput::Kind::folder);
   const auto name = [&](int i) { return frame_name(i, pictures.count, ".png"); };
   const auto write_one = [&](int i) { write_bytes(folder / name(i), png_of(pictures.draw(i))); };
   parallel_for(pictures.count, write_one, context);
-  for (const auto& [extra, content] : request.extra) write_bytes(folder / extra, content);
+  for (const auto& [extra, content] : options.extra) write_bytes(folder / extra, content);
   outputs.commit();
   std::vector<std::filesystem::path> files;
   files.reserve(static_cast<std::size_t>(pictures.count));
-  for (int i = 0; i < pictures.count; ++i) files.push_back(request.target / name(i));
+  for (int i = 0; i < pictures.count; ++i) files.push_back(target / name(i));
   return files;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "toolkit/drawing/picture.h"
-#include "toolkit/operations/bound_parameters.h"
+#include "toolkit/mesh/bound_parameters.h"
 #include "toolkit/operations/operation.h"
 
 namespace mimetra {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "toolkit/drawing/chart.h"
-#include "toolkit/operations/data.h"
+#include "toolkit/io/data.h"
 
 namespace mimetra {
 

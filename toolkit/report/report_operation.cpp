@@ -4,10 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/format.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/format.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/reports.h"
 #include "toolkit/pictures/picture_formats.h"

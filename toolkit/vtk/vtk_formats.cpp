@@ -2,34 +2,18 @@
 
 #include <algorithm>
 
+#include "toolkit/io/file_parameters.h"
+#include "toolkit/io/format.h"
+#include "toolkit/io/frame_times.h"
 #include "toolkit/io/regions_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/colors.h"
-#include "toolkit/operations/format.h"
-#include "toolkit/operations/sequence_parameters.h"
 #include "toolkit/vtk/vtp_series.h"
 
 namespace mimetra {
 
 namespace {
-
-BoundParameters<VtpOptions> vtp_parameters() {
-  BoundParameters<VtpOptions> list;
-  return list.add("compress", VtpOptions::kCompression,
-                  "compression of .vtp: fast (LZ4) or small (zlib)");
-}
-
-std::vector<std::filesystem::path> write(const FieldSequence& fields, const WriteRequest& request,
-                                         const Context& context) {
-  VtpOptions options = vtp_parameters().read(request.parameters);
-  options.overwrite = request.overwrite;
-  options.inputs = request.inputs;
-  options.together = request.together;
-  return write_with_extra(
-      request, [&] { return write_vtp_series(fields, request.target, options, context); });
-}
 
 /// Throws MismatchError if the target would hold only the first of several frames.
 void check_frame_count(const FrameSource& frames, const std::filesystem::path& target) {
@@ -39,48 +23,40 @@ void check_frame_count(const FrameSource& frames, const std::filesystem::path& t
                       "; write a .pvd, or take one by option 'frames'");
 }
 
-std::vector<std::filesystem::path> write_sequence_data(const Data& data,
-                                                       const WriteRequest& request,
-                                                       const Context& context) {
+Format::Paths write_sequence_data(const Data& data, const std::filesystem::path& target,
+                                  const WriteOptions& options, const Context& context) {
   FieldSequence sequence = std::get<FieldSequence>(data);
-  check_frame_count(*sequence.frames, request.target);
+  check_frame_count(*sequence.frames, target);
   show_displacement(sequence);
-  return write(sequence, request, context);
+  return write_vtp_series(sequence, target, options, context);
 }
 
-ReadValue read_sequence_data(const std::string& text, const ReadRequest& request,
+ReadValue read_sequence_data(const std::string& text, const ReadOptions& options,
                              const Context& context) {
-  const SequenceSource source = frame_parameters().read(request.parameters);
   std::vector<std::string> notes;
   const Context noting =
       context.with_notes([&](const Note& note) { notes.push_back(text + ": " + note.text); });
-  const VtpReadOptions options{.source = source, .fields = request.fields};
-  FieldSequence read = request.may_stream ? open_vtp_series(text, options, noting)
-                                          : read_vtp_series(text, options, noting);
+  FieldSequence read = open_vtp_series(text, options, noting);
   // The steps between selected frames may differ.
-  const std::string odd = source.frames ? "" : note_on_steps(read.frames->known_times());
+  const std::string odd = options.frames ? "" : note_on_steps(read.frames->known_times());
   if (!odd.empty()) noting.note(odd);
   return {{text, std::move(read)}, vtp_series_files(text), std::move(notes)};
 }
 
-std::vector<std::filesystem::path> write_region_data(const Data& data, const WriteRequest& request,
-                                                     const Context& context) {
-  FieldSequence shown = std::get<RegionData>(data).fields;
-  if (shown.frames->frames() > 0) {
-    const auto region = std::ranges::find(shown.fields, "region", &Field::name);
-    if (region != shown.fields.end() && region->values.rows() == shown.frames->vertices()) {
-      shown.fields.push_back(region_color_field(*region, shown.frames->connectivity()));
-    }
-    return write(shown, request, context);
+Format::Paths write_region_data(const Data& data, const std::filesystem::path& target,
+                                const WriteOptions& options, const Context& context) {
+  FieldSequence shown = shown_regions(data, target);
+  const auto region = std::ranges::find(shown.fields, "region", &Field::name);
+  if (region != shown.fields.end() && region->values.rows() == shown.frames->vertices()) {
+    shown.fields.push_back(region_color_field(*region, shown.frames->connectivity()));
   }
-  throw MismatchError(request.target.string() +
-                      ": the regions come without a mesh to show them on; write .json or .csv");
+  return write_vtp_series(shown, target, options, context);
 }
 
-ReadValue read_region_data(const std::string& text, const ReadRequest& request, const Context&) {
+ReadValue read_region_data(const std::string& text, const ReadOptions& options, const Context&) {
   return {{text, RegionData{region_of_mask(text, read_vtp_field(text, "roi"),
-                                           find_vtp_field(text, "weight"), request.vertices,
-                                           *request.triangles),
+                                           find_vtp_field(text, "weight"), options.vertices,
+                                           *options.triangles),
                             {}}},
           {text}};
 }
@@ -88,8 +64,8 @@ ReadValue read_region_data(const std::string& text, const ReadRequest& request, 
 }  // namespace
 
 void add_vtp(OperationTable& table) {
-  const std::vector<Parameter> reading = frame_parameters().declared();
-  const std::vector<Parameter> writing = vtp_parameters().declared();
+  const std::vector<Parameter> reading = reading_parameters({"frames", "fps"});
+  const std::vector<Parameter> writing = writing_parameters({"compress"});
   Format series{.name = "ParaView time series",
                 .kind = DataKind::sequence,
                 .extensions = {".pvd"},
@@ -99,7 +75,7 @@ void add_vtp(OperationTable& table) {
                 .write = write_sequence_data,
                 .fields = true,
                 .displacements = true,
-                .holds = [](const Parameters&) {
+                .holds = [](const WriteOptions&) {
                   return HeldParts{.polygons = true, .exact_positions = false};
                 }};
   table.add(series);

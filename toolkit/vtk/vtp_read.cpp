@@ -12,6 +12,7 @@
 
 #include "toolkit/io/binary_file.h"
 #include "toolkit/io/frame_files.h"
+#include "toolkit/io/frame_times.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/io/sequence_parts.h"
 #include "toolkit/io/whole_file.h"
@@ -302,14 +303,14 @@ std::vector<std::string> notes_on(const Findings& found) {
 
 }  // namespace
 
-FieldSequence open_vtp_series(const fs::path& path, const VtpReadOptions& options,
+FieldSequence open_vtp_series(const fs::path& path, const ReadOptions& options,
                               const Context& context) {
-  check_options(options.source);
+  check_options(options);
   const SeriesFiles all = files_of(path);
-  if (all.times) check_rate(path.string(), *all.times, options.source);
+  if (all.times) check_rate(path.string(), *all.times, options.fps);
   for (const std::string& note : all.series.notes) context.note(note);
   const auto count = static_cast<int>(all.series.frames.size());
-  const std::vector<int> chosen = selected_frames(options.source.frames, count);
+  const std::vector<int> chosen = selected_frames(options.frames, count);
   std::vector<fs::path> files;
   for (const int frame : chosen) {
     files.push_back(all.series.frames[static_cast<std::size_t>(frame)]);
@@ -329,14 +330,14 @@ FieldSequence open_vtp_series(const fs::path& path, const VtpReadOptions& option
     header.rest = positions_in(VtkFile(*all.series.rest), *header.connectivity, *first);
     header.rest_is_known = true;
   }
-  const FrameTimes times = frame_times(path.string(), count, all.times, options.source);
+  const FrameTimes times = frame_times(path.string(), count, all.times, options.fps);
   header.times = times.seconds(chosen);
   header.times_are_known = times.are_known;
   return {std::make_shared<const VtpFrames>(std::move(files), first, std::move(header)),
           std::move(found.fields)};
 }
 
-FieldSequence read_vtp_series(const fs::path& path, const VtpReadOptions& options,
+FieldSequence read_vtp_series(const fs::path& path, const ReadOptions& options,
                               const Context& context) {
   FieldSequence open = open_vtp_series(path, options, context.part(0, 0));
   return {MeshSequence(*open.frames, context), std::move(open.fields)};

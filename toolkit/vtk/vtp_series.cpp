@@ -61,10 +61,10 @@ void check(const FieldSequence& fields) {
 /// not used: it encodes all arrays for each file, and its text depends on the files before.
 class VtpTexts {
  public:
-  VtpTexts(const FieldSequence& fields, VtpCompression compression)
+  VtpTexts(const FieldSequence& fields, Compression compression)
       : fields_(fields),
-        compressor_(compression == VtpCompression::lz4 ? "vtkLZ4DataCompressor"
-                                                       : "vtkZLibDataCompressor") {
+        compressor_(compression == Compression::fast ? "vtkLZ4DataCompressor"
+                                                     : "vtkZLibDataCompressor") {
     const Connectivity& connectivity = fields.frames->connectivity();
     const vtkNew<vtkPolyData> data;
     set_polygons(*data, connectivity);
@@ -186,19 +186,20 @@ std::vector<FrameEntry> entries_of(const FrameSource& sequence, const std::strin
   return entries;
 }
 
-std::filesystem::path write_one(const FieldSequence& fields, const std::filesystem::path& target,
-                                const VtpOptions& options, const Context& context) {
+std::vector<std::filesystem::path> write_one(const FieldSequence& fields,
+                                             const std::filesystem::path& target,
+                                             const WriteOptions& options, const Context& context) {
   PendingOutputs outputs(options.overwrite, options.inputs, options.together);
   write_bytes(outputs.add(target, PendingOutput::Kind::file),
               VtpTexts(fields, options.compression).at(0));
   context.report(1);
   outputs.commit();
-  return target;
+  return {target};
 }
 
 std::vector<std::filesystem::path> write_all(const FieldSequence& fields,
                                              const std::filesystem::path& target,
-                                             const VtpOptions& options, const Context& context) {
+                                             const WriteOptions& options, const Context& context) {
   const std::string name = target.stem().string();
   if (!is_printable(name)) {
     throw OutputError(target.string(),
@@ -237,14 +238,17 @@ std::vector<std::filesystem::path> write_all(const FieldSequence& fields,
 
 std::vector<std::filesystem::path> write_vtp_series(const FieldSequence& fields,
                                                     const std::filesystem::path& target,
-                                                    const VtpOptions& options,
+                                                    const WriteOptions& options,
                                                     const Context& context) {
   check(fields);
   check_options(options);
   const SilentVtk silent;
   const std::string extension = lower_extension(target);
-  if (extension == ".vtp") return {write_one(fields, target, options, context)};
-  if (extension == ".pvd") return write_all(fields, target, options, context);
+  if (extension == ".vtp" || extension == ".pvd") {
+    const auto write = extension == ".vtp" ? write_one : write_all;
+    return write_with_extra(target, options,
+                            [&] { return write(fields, target, options, context); });
+  }
   throw std::invalid_argument(target.string() + ": expected a name that ends in .pvd or .vtp");
 }
 

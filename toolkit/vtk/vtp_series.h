@@ -1,47 +1,15 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "toolkit/io/sequence_format.h"
+#include "toolkit/io/format.h"
 #include "toolkit/mesh/context.h"
-#include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/fields.h"
-#include "toolkit/mesh/option.h"
 
 namespace mimetra {
-
-class PendingOutputs;
-
-enum class VtpCompression { lz4, zlib };
-
-/// Name of the choice on the command line.
-constexpr std::string_view choice_name(VtpCompression value) {
-  switch (value) {
-    case VtpCompression::lz4:
-      return "fast";
-    case VtpCompression::zlib:
-      return "small";
-  }
-  return {};
-}
-
-struct VtpOptions {
-  VtpCompression compression = VtpCompression::lz4;
-  bool overwrite = false;
-  /// Files and folders that were read, which must not be overwritten.
-  std::vector<std::filesystem::path> inputs = {};
-  /// Outputs that appear together with this one; null if it appears alone.
-  PendingOutputs* together = nullptr;
-
-  static constexpr Option kCompression{"compression", &VtpOptions::compression};
-  static constexpr Option kOverwrite{"overwrite", &VtpOptions::overwrite};
-  static constexpr auto declared() { return std::tuple(kCompression, kOverwrite); }
-};
 
 /// Writes a sequence with its fields for ParaView: `NAME.pvd` and `NAME.vtp.series` beside a folder
 /// `NAME_vtp` of `NAME_0000.vtp` ... For a target NAME.vtp, writes only the first frame, into one
@@ -55,15 +23,8 @@ struct VtpOptions {
 /// share a name, or the target is neither .pvd nor .vtp.
 std::vector<std::filesystem::path> write_vtp_series(const FieldSequence& fields,
                                                     const std::filesystem::path& target,
-                                                    const VtpOptions& = {},
+                                                    const WriteOptions& = {},
                                                     const Context& context = {});
-
-struct VtpReadOptions {
-  /// Its `frames` selects frames; its `fps` is for series without times.
-  SequenceSource source = {};
-  /// If false, reads no fields, and opens no further files to compare them.
-  bool fields = true;
-};
 
 /// Opens a series as write_vtp_series() or ParaView writes it: NAME.pvd, NAME.vtp.series, a folder
 /// or pattern of numbered files, or one file. Files are .vtp, .vtu or legacy .vtk.
@@ -75,12 +36,12 @@ struct VtpReadOptions {
 /// The other frames are read when they are needed, with the same errors. Throws IoError, which
 /// names the file, and Cancelled. Throws MismatchError if a frame has other vertices or faces.
 /// Faces may be in another order or triangulated differently, but not flipped.
-FieldSequence open_vtp_series(const std::filesystem::path& path, const VtpReadOptions& = {},
-                              const Context& context = {});
+FieldSequence open_vtp_series(const std::filesystem::path& path,
+                              const ReadOptions& = {.fields = true}, const Context& context = {});
 
 /// Reads a series like open_vtp_series(), with all frames in memory.
-FieldSequence read_vtp_series(const std::filesystem::path& path, const VtpReadOptions& = {},
-                              const Context& context = {});
+FieldSequence read_vtp_series(const std::filesystem::path& path,
+                              const ReadOptions& = {.fields = true}, const Context& context = {});
 
 /// Files that open_vtp_series() reads for a path: the list or the file, and all frames.
 std::vector<std::filesystem::path> vtp_series_files(const std::filesystem::path& path);

@@ -3,7 +3,7 @@
 #include <set>
 #include <string>
 
-#include "toolkit/operations/data.h"
+#include "toolkit/io/data.h"
 
 class vtkPolyData;
 class vtkTable;

@@ -19,7 +19,7 @@
 
 #include "plugins/paraview/mimetra/filters/time_steps.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/operations/parameter.h"
+#include "toolkit/mesh/parameter.h"
 
 using namespace mimetra;
 using Pipeline = vtkStreamingDemandDrivenPipeline;

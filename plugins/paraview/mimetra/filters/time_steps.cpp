@@ -4,9 +4,9 @@
 
 #include <vtkPolyData.h>
 
+#include "toolkit/io/frame_times.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/operations/parameter.h"
-#include "toolkit/operations/sequence_parameters.h"
+#include "toolkit/mesh/parameter.h"
 #include "toolkit/vtk/poly_data.h"
 
 using namespace mimetra;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "toolkit/operations/data.h"
+#include "toolkit/io/data.h"
 #include "toolkit/vtk/poly_data.h"
 
 class vtkDataObject;

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "toolkit/io/format.h"
+
+namespace mimetra {
+
+/// The table of file formats, in the order of lists for users. VTK, pictures and landmarks add
+/// theirs to a program's OperationTable.
+const std::vector<Format>& formats();
+
+/// Format of a path's extension whose sequences are read or written frame by frame; null if there
+/// is none.
+const Format* sequence_format(const std::filesystem::path& path);
+
+}  // namespace mimetra
