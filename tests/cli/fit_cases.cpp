@@ -237,7 +237,7 @@ void add_requests(std::vector<BadInput>& all) {
       {"--repeated", "--solver joint"});
   add("frames_beyond", "t.csv --model head -o o --frames 5:", 4, {"2 frames"});
   add("missing_model", "t.csv --model no -o o", 3, {"no: does not exist"});
-  add("no_model", "t.csv --model t.csv -o o", 3, {"t.csv: ", "model can be read from .bin"});
+  add("no_model", "t.csv --model t.csv -o o", 3, {"t.csv: ", "model can be read from .glb"});
   add("several_frames_into_a_mesh", "t.csv --model head -o o.obj", 4, {"2 frames"});
   add("overlay_without_images", "t.csv --model head -o o --overlay v", 2,
       {"--overlay: t.csv has no images", "--images"});
