@@ -6,7 +6,6 @@
 #include "plugins/c/crossing.h"
 #include "plugins/c/given_arrays.h"
 #include "plugins/c/value.h"
-#include "toolkit/io/format.h"
 #include "toolkit/io/frame_times.h"
 #include "toolkit/io/painting_file.h"
 #include "toolkit/io/weight_file.h"

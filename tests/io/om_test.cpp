@@ -369,6 +369,16 @@ TEST_F(OmFile, HoldsNoFieldThatOpenMeshDropsOrCuts) {
   EXPECT_EQ(Read(path_).field("y").values, longest.values);
 }
 
+TEST_F(OmFile, HasItsFieldsInASequence) {
+  const TriMesh mesh = test::mesh_of(test::octahedron());
+  const Field heat{"heat", Field::Location::vertices, Eigen::VectorXd::LinSpaced(6, 0, 1)};
+  write_mesh(path_, mesh, {.double_precision = true, .fields = {heat}});
+  const SequenceRead read = read_sequence(path_.string());
+  ASSERT_EQ(read.fields.size(), 1u);
+  EXPECT_EQ(read.fields[0].values, heat.values);
+  EXPECT_TRUE(read_sequence(path_.string(), {.fields = false}).fields.empty());
+}
+
 TEST_F(OmFile, OfAWholeSequenceStandInAFolder) {
   const test::Shape shape = test::octahedron();
   Frames frames(3, shape.positions.size());

@@ -88,6 +88,26 @@ TEST(FormatTable, ListsWhatItKnowsWhereNothingReadsAFile) {
               ThrowsMessage<UsageError>(HasSubstr("no file holds a value of the kind 'pictures'")));
 }
 
+TEST(FormatTable, ReadsAFolderWithAFilesNameAsAFolder) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path actor = folder / "actor.glb";
+  std::filesystem::create_directory(actor);
+  EXPECT_EQ(toolkit_table().reader(DataKind::model, actor).name, "folder of shapes");
+  EXPECT_EQ(toolkit_table().reader(DataKind::sequence, actor).name, "folder of meshes");
+}
+
+TEST(FormatTable, NamesTheOptionThatBuildsAMissingFormat) {
+  OperationTable table = toolkit_table();
+  table.add(Format{.name = "films",
+                   .kind = DataKind::components,
+                   .extensions = {".film"},
+                   .built_by = "MIMETRA_FILMS"});
+  const auto says_how = ThrowsMessage<UsageError>(
+      HasSubstr("films is not built into this program; build it with -DMIMETRA_FILMS=ON"));
+  EXPECT_THAT([&] { table.reader(DataKind::components, "a.film"); }, says_how);
+  EXPECT_THAT([&] { table.writer({"out", DataKind::components, ""}, "a.film"); }, says_how);
+}
+
 TEST(FormatTable, RefusesAnExtensionThatItsKindHasAlready) {
   OperationTable table = toolkit_table();
   EXPECT_THAT([&] { table.add(format_of(".csv")); },

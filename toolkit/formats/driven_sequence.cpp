@@ -8,13 +8,14 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-/// Throws MismatchError for a model without expressions that `driver` would move.
+/// Throws MismatchError for a model without expressions, which `driver` cannot move, if meshes in
+/// its folder look like expressions.
 void check_has_expressions(const BlendshapeModel& person, const fs::path& path,
                            const fs::path& driver) {
   if (person.expressions().size() > 0) return;
-  const std::vector<std::string> unread = notes_on_unread(path);
-  throw MismatchError(driver.string() + ": drives nothing; " +
-                      (unread.empty() ? path.string() + ": has no expressions" : unread[0]));
+  for (const std::string& unread : notes_on_unread(path)) {
+    throw MismatchError(driver.string() + ": drives nothing; " + unread);
+  }
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "toolkit/formats/formats.h"
 
 #include <algorithm>
-#include <iterator>
 
 #include "toolkit/formats/driven_sequence.h"
 #include "toolkit/formats/gltf/gltf_format.h"
@@ -133,6 +132,7 @@ OpenSequence open_folder(const fs::path& path, const ReadOptions& options, const
 }
 
 OpenSequence open_model(const fs::path& path, const ReadOptions& options, const Context& context) {
+  if (!is_model(path)) throw IoError(path.string(), "is not an eos shape model");
   return open_driven(ModelSpec{path, {}, {}}, options, context);
 }
 
@@ -222,10 +222,18 @@ const std::vector<Format>& formats() {
   return all;
 }
 
+const Format& folder_of_meshes() {
+  return *std::ranges::find_if(formats(), [](const Format& format) {
+    return format.kind == DataKind::sequence && format.has(Format::kFolder);
+  });
+}
+
 const Format* sequence_format(const fs::path& path) {
   const std::string extension = lower_extension(path);
   const auto found = std::ranges::find_if(formats(), [&extension](const Format& format) {
-    return (format.open || format.create) && !extension.empty() && format.has(extension);
+    const bool is_of_frames = format.open || format.create || !format.built_by.empty();
+    return format.kind == DataKind::sequence && is_of_frames && !extension.empty() &&
+           format.has(extension);
   });
   return found == formats().end() ? nullptr : &*found;
 }

@@ -10,7 +10,6 @@
 #include "toolkit/formats/model_file.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/frame_times.h"
-#include "toolkit/io/mesh_file.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/sequence_parts.h"
 #include "toolkit/io/whole_file.h"
@@ -43,8 +42,8 @@ void check_undriven(const std::string& text, const ReadOptions& options) {
 }
 
 OpenSequence open_path(const fs::path& path, const ReadOptions& options, const Context& context) {
-  if (fs::is_directory(path)) return open_frames(frames_of_folder(path), path, options, context);
-  const Format* format = sequence_format(path);
+  const Format* format = fs::is_directory(path) ? &folder_of_meshes() : sequence_format(path);
+  if (format) require_built(*format, path.string());
   if (format && format->open) return format->open(path, options, context);
   const std::string found = foreign_file(path);
   throw IoError(path.string(), found.empty()
@@ -112,7 +111,7 @@ SequenceRead read_sequence(const std::string& text, const ReadOptions& options,
                            const Context& context) {
   OpenSequence open = open_sequence(text, options, context.part(0, 0));
   SequenceRead read{MeshSequence(*open.frames, context), open.model_driven, std::move(open.files),
-                    std::move(open.notes)};
+                    std::move(open.notes), std::move(open.fields)};
   context.report(1);
   return read;
 }
@@ -121,8 +120,8 @@ std::unique_ptr<FrameSink> begin_sequence(const SequenceHeader& header, const fs
                                           const WriteOptions& options, const Context& context) {
   check_options(options);
   if (header.times.size() == 0) throw std::invalid_argument("the sequence has no frames");
-  if (target.extension().empty()) return begin_folder(header, target, options, context);
-  const Format* format = sequence_format(target);
+  const Format* format = target.extension().empty() ? &folder_of_meshes() : sequence_format(target);
+  if (format) require_built(*format, target.string());
   if (format && format->create) return format->create(header, target, options, context);
   throw std::invalid_argument(target.string() + ": no sequence can be written as '" +
                               target.extension().string() + "', expected " +

@@ -18,6 +18,8 @@ struct SequenceRead {
   bool model_driven = false;
   std::vector<std::filesystem::path> files = {};
   std::vector<std::string> notes = {};
+  /// Fields on the mesh, for formats that have them.
+  std::vector<Field> fields = {};
 };
 
 /// Opens `text`, which names:

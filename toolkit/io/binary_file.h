@@ -105,8 +105,7 @@ enum class OutputKind { file, folder };
 std::filesystem::path make_temporary_beside(const std::filesystem::path& target, OutputKind kind,
                                             std::error_code& error);
 
-/// Name of `path` after it is committed, for messages: temporary names are replaced by their
-/// targets.
+/// Name of `path` after it is committed: temporary names are replaced by their targets.
 std::filesystem::path committed_name(const std::filesystem::path& path);
 
 }  // namespace mimetra

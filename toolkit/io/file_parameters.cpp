@@ -56,8 +56,10 @@ Options values_of(const BoundParameters<Options>& bound, const std::vector<Param
   Options options;
   options.parameters = &parameters;
   for (const auto& entry : bound.entries()) {
-    const std::string& name = entry.parameter.name;
-    const bool is_declared = std::ranges::find(declared, name, &Parameter::name) != declared.end();
+    // Another format's parameter may have the name with another meaning.
+    const bool is_declared = std::ranges::any_of(declared, [&entry](const Parameter& parameter) {
+      return parameter.name == entry.parameter.name && parameter.kind == entry.parameter.kind;
+    });
     if (is_declared) entry.apply(parameters, options, nullptr);
   }
   return options;

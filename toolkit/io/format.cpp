@@ -38,6 +38,12 @@ std::vector<Parameter> Format::options() const {
   return all;
 }
 
+void require_built(const Format& format, const std::string& text) {
+  if (format.built_by.empty()) return;
+  throw UsageError(text + ": " + format.name + " is not built into this program; build it with -D" +
+                   format.built_by + "=ON");
+}
+
 std::string listed_extensions(std::vector<std::string> extensions) {
   std::stable_partition(extensions.begin(), extensions.end(),
                         [](const auto& each) { return each.starts_with('.'); });
@@ -103,7 +109,9 @@ Paths write_with_extra(const std::filesystem::path& target, const WriteOptions& 
 Paths write_text(const std::filesystem::path& target, const WriteOptions& options,
                  const std::string& text) {
   return write_with_extra(target, options, [&]() -> Paths {
-    write_file(target, text, options.overwrite, options.together);
+    PendingOutputs outputs(options.overwrite, options.inputs, options.together);
+    write_bytes(outputs.add(target, PendingOutput::Kind::file), text);
+    outputs.commit();
     return {target};
   });
 }

@@ -38,7 +38,7 @@ struct ReadOptions {
   /// Factor for the weights; without it, weights far beyond 0 to 1 are refused.
   std::optional<double> weight_scale = {};
   /// Read the fields on the mesh of a sequence.
-  bool fields = false;
+  bool fields = true;
   /// Keep a model's identities, instead of reading one person.
   bool identities = false;
   /// Mesh of a region set: number of vertices, and triangles.
@@ -77,7 +77,7 @@ constexpr std::string_view choice_name(Compression value) {
 
 /// Settings for writing a file. A format uses those that its declaration names.
 struct WriteOptions {
-  /// Format of the frames in a folder: the extension of a mesh format without its dot.
+  /// Format of the frames in a folder: the extension of a mesh format without its dot, in any case.
   std::string frame_format = "ply";
   /// `double_precision` applies to mesh files; poses far from the origin always have it.
   /// `single_precision` applies to arrays.
@@ -228,10 +228,16 @@ struct Format {
   MeshFrame (*mesh_frame)(const Connectivity& connectivity, const std::vector<Field>& fields,
                           bool double_precision, const Context&) = nullptr;
 
+  /// CMake's option that builds the format, such as "MIMETRA_GLTF"; empty if it is built.
+  std::string built_by = {};
+
   bool has(const std::string& extension) const;
   /// Parameters for reading and writing, each once.
   std::vector<Parameter> options() const;
 };
+
+/// Throws UsageError, beginning with `text`, for a format that is not built into this program.
+void require_built(const Format& format, const std::string& text);
 
 /// List of extensions for messages and help: ".json, .csv or a folder".
 std::string listed_extensions(std::vector<std::string> extensions);
@@ -272,9 +278,10 @@ std::vector<std::string> mesh_extensions();
 /// Message about a lower-case extension that is_mesh_extension() refuses.
 std::string unknown_mesh_extension(const std::string& extension);
 /// Parts that a folder of mesh files can store, in a format (".ply") and with files beside it.
+/// Throws std::invalid_argument for another extension.
 HeldParts held_in_folder(const std::string& extension);
 
-/// Formats of sequences without faces; each is defined in the file of its format.
+/// Formats of arrays and point caches; each is defined in the file of its format.
 Format npy_format(), npz_format(), pc2_format(), mdd_format();
 
 }  // namespace mimetra

@@ -3,9 +3,7 @@
 #include "toolkit/io/bytes.h"
 #include "toolkit/io/file_parameters.h"
 #include "toolkit/io/frame_times.h"
-#include "toolkit/io/mesh_file.h"
 #include "toolkit/io/point_cache.h"
-#include "toolkit/io/sequence_parts.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 

@@ -263,8 +263,6 @@ MeshFileReader::MeshFileReader(fs::path first, const Context& context) : first_(
   }
 }
 
-MeshFileReader::~MeshFileReader() = default;
-
 void MeshFileReader::read(const fs::path& path, std::span<double> coordinates) const {
   if (coordinates.size() != static_cast<std::size_t>(mesh_.positions.size())) {
     throw std::invalid_argument(std::to_string(coordinates.size()) + " coordinates, expected " +

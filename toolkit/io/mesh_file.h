@@ -36,7 +36,6 @@ class MeshFileReader {
  public:
   /// Throws as read_mesh().
   explicit MeshFileReader(std::filesystem::path first, const Context& context = {});
-  ~MeshFileReader();
 
   const std::filesystem::path& first() const { return first_; }
   const TriMesh& mesh() const { return mesh_; }
@@ -52,13 +51,13 @@ class MeshFileReader {
   FurtherReader further_;
 };
 
-/// Writes one mesh with its polygons, in the format of the extension, with coordinates as floats
-/// or, by option and never in STL, in double precision:
+/// Writes one mesh with its polygons, in the format of the extension. Of the options, the precision
+/// and the fields apply: coordinates are floats or, by option and never in STL, doubles.
 ///  - .obj, with texture coordinates and groups, but without the material library, which a sequence
 ///    writes beside it;
 ///  - .ply, binary little endian, with texture coordinates;
 ///  - .off;
-///  - .om, with texture coordinates and the fields of the options;
+///  - .om, with texture coordinates and the fields;
 ///  - .stl, binary, as triangles.
 ///
 /// Throws OutputError, MismatchError for values that the precision or the format cannot hold,

@@ -107,7 +107,7 @@ class FolderSink : public FrameSink {
       : header_(header),
         extent_(extent(header.rest)),
         target_(target),
-        extension_('.' + options.frame_format),
+        extension_('.' + lower_case(options.frame_format)),
         outputs_(options.overwrite, options.inputs, options.together),
         folder_(outputs_.add(target, PendingOutput::Kind::folder)),
         writer_(*header.connectivity, extension_, options.double_precision, {}, target.string(),
@@ -204,11 +204,8 @@ OpenSequence open_frames(const FrameSeries& series, const fs::path& folder,
 
 std::unique_ptr<FrameSink> begin_folder(const SequenceHeader& header, const fs::path& target,
                                         const WriteOptions& options, const Context& context) {
-  const std::string extension = '.' + options.frame_format;
-  if (!is_mesh_extension(extension)) {
-    throw std::invalid_argument("option 'format': " + unknown_mesh_extension(extension));
-  }
-  if (extension != ".obj" || !header.connectivity->materials) {
+  const HeldParts holds = held_in_folder('.' + options.frame_format);
+  if (!holds.groups || !header.connectivity->materials) {
     return std::make_unique<FolderSink>(header, target, options, WrittenMaterials(), context);
   }
   const WrittenMaterials materials = materials_in_folder(*header.connectivity, target);

@@ -2,7 +2,6 @@
 
 #include "toolkit/io/bytes.h"
 #include "toolkit/io/file_parameters.h"
-#include "toolkit/io/mesh_file.h"
 #include "toolkit/io/point_cache.h"
 #include "toolkit/mesh/errors.h"
 

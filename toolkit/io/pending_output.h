@@ -28,8 +28,7 @@ class PendingOutput {
   PendingOutput(const PendingOutput&) = delete;
   PendingOutput& operator=(const PendingOutput&) = delete;
 
-  /// Hidden name without the target's extension. Writers that choose a format by extension must get
-  /// it separately.
+  /// Hidden name without the target's extension, which committed_name() gives to writers.
   const std::filesystem::path& path() const { return temporary_; }
   const std::filesystem::path& target() const { return target_; }
   Kind kind() const { return kind_; }

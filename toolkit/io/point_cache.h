@@ -95,8 +95,8 @@ struct PointCacheParts {
   std::optional<Positions> rest = {};
 };
 
-/// Opens the frames that `source` selects. If the file has no faces, they come from
-/// `source.topology` or from NAME.topology.ply beside it, and the rest pose from NAME.rest.ply.
+/// Opens the frames that `options` select. If the file has no faces, they come from
+/// `options.topology` or from NAME.topology.ply beside it, and the rest pose from NAME.rest.ply.
 /// Throws IoError, MismatchError, Cancelled.
 OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache, const ReadOptions& options,
                               PointCacheParts parts = {}, const Context& context = {});

@@ -183,7 +183,7 @@ OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path&
   const std::vector<std::string>& expressions = model->expressions().names;
   if (expressions.empty()) {
     throw MismatchError(driver.string() + ": drives nothing; " + path.string() +
-                        " has no expressions");
+                        ": has no expressions");
   }
   for (const std::string& note : track.notes) open.notes.push_back(driver.string() + ": " + note);
   const auto unmatched = match_notes(driver, path, match_weights(track, expressions));

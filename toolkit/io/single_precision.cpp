@@ -1,12 +1,7 @@
 #include "toolkit/io/single_precision.h"
 
-#include <algorithm>
-
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/option.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/mesh/tri_mesh.h"
-#include "toolkit/mesh/weld.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;

@@ -50,9 +50,9 @@ class Loader {
     options.identities = input.identities;
     options.vertices = vertices_;
     options.triangles = &triangles_;
-    const bool streams = may_stream_ && input.streamed;
-    ReadValue read = format.read(text, options, streams ? context : context.part(0, 0));
-    if (!streams) read.value.data = in_memory(std::move(read.value.data), context);
+    const bool loads = input.kind == DataKind::sequence && !(may_stream_ && input.streamed);
+    ReadValue read = format.read(text, options, loads ? context.part(0, 0) : context);
+    if (loads) read.value.data = in_memory(std::move(read.value.data), context);
     context.report(1);
     for (const std::string& note : read.notes) {
       if (log_) log_(LogLevel::warning, note);

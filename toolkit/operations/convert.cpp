@@ -4,7 +4,6 @@
 
 #include "toolkit/correspondence/renumbering.h"
 #include "toolkit/formats/gltf/scene.h"
-#include "toolkit/io/format.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/mesh/bound_parameters.h"
 #include "toolkit/mesh/frame_store.h"

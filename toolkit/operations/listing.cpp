@@ -47,13 +47,12 @@ std::string held_by(const Format& format) {
 
 std::string formats_as_markdown(const OperationTable& table) {
   std::string text =
-      "# Formats\n\nMade by `mimetra formats --markdown` from the table of formats. What a "
-      "sequence has "
-      "and its format does not\nhold is left out, and named where it is written; what stands in "
-      "files "
-      "beside it (`NAME.rest.ply`,\n`NAME.topology.ply`) counts as held. A folder holds what its "
-      "files "
-      "do, by default PLY.\n";
+      "# Formats\n\nMade by `mimetra formats --markdown` from the table of formats. The command "
+      "names "
+      "the parts of a sequence\nthat a format cannot store, and drops them. Files beside a "
+      "sequence "
+      "(`NAME.rest.ply`, `NAME.topology.ply`) count\nas part of it. A folder stores what its files "
+      "store, by default PLY.\n";
   const DataKind* kind = nullptr;
   const std::vector<Format> formats = by_kind(table);
   for (const Format& format : formats) {
@@ -64,9 +63,10 @@ std::string formats_as_markdown(const OperationTable& table) {
     }
     kind = &format.kind;
     const std::string options = joined(option_words(format.options()), "` `");
-    text += "| " + listed_extensions(format.extensions) + " | " + format.name + " | " +
-            (format.read ? "yes" : "") + " | " + (format.write ? "yes" : "") + " | " +
-            held_by(format) + " | " + (options.empty() ? "" : '`' + options + '`') + " |\n";
+    text += "| " + listed_extensions(format.extensions) + " | " + format.name +
+            (format.built_by.empty() ? "" : " (not built)") + " | " + (format.read ? "yes" : "") +
+            " | " + (format.write ? "yes" : "") + " | " + held_by(format) + " | " +
+            (options.empty() ? "" : '`' + options + '`') + " |\n";
   }
   return text;
 }
@@ -79,7 +79,10 @@ std::string formats_as_text(const OperationTable& table) {
   for (const Format& format : formats) {
     if (!kind || *kind != format.kind) text += std::string(kind_name(format.kind)) + '\n';
     kind = &format.kind;
-    const char* use = !format.write ? " (read)" : !format.read ? " (written)" : "";
+    const char* use = !format.built_by.empty() ? " (not built)"
+                      : !format.write          ? " (read)"
+                      : !format.read           ? " (written)"
+                                               : "";
     std::string names = listed_extensions(format.extensions);
     names.resize(std::max<std::size_t>(names.size(), 26), ' ');
     text += "  " + names + "  " + format.name + use + '\n';
@@ -98,6 +101,7 @@ Json formats_as_json(const OperationTable& table) {
                     {"extensions", format.extensions},
                     {"read", bool(format.read)},
                     {"written", bool(format.write)},
+                    {"built", format.built_by.empty()},
                     {"holds", held_by(format)},
                     {"reading", reading},
                     {"writing", writing}});

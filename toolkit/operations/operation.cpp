@@ -6,7 +6,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "toolkit/formats/sequence_file.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/io/pending_output.h"
@@ -145,8 +144,6 @@ void OperationTable::add(Operation operation) {
 }
 
 void OperationTable::add(Format format) {
-  if (format.open) format.read = read_sequence_value;
-  if (format.create) format.write = write_sequence_value;
   for (const Format& known : formats_) {
     const bool clashes =
         known.kind == format.kind && ((known.read && format.read) || (known.write && format.write));
@@ -225,20 +222,24 @@ const Format* format_of_frames(const std::vector<Format>& formats, DataKind kind
 
 const Format& OperationTable::reader(DataKind kind, const std::string& text) const {
   const std::string extension = lower_extension(text);
-  const Format *folder = nullptr, *any_file = nullptr;
+  std::error_code unreadable;
+  const bool is_folder = std::filesystem::is_directory(text, unreadable);
+  const Format *folder = nullptr, *any_file = nullptr, *by_extension = nullptr;
   std::vector<std::string> known;
   for (const Format& format : formats_) {
+    if (format.kind == kind && format.has(extension)) require_built(format, text);
     if (!format.read || format.kind != kind) continue;
-    if (!extension.empty() && format.has(extension)) return format;
+    if (!extension.empty() && format.has(extension)) by_extension = &format;
     if (format.has(Format::kFolder)) folder = &format;
     if (format.has(Format::kAnyFile)) any_file = &format;
     known.insert(known.end(), format.extensions.begin(), format.extensions.end());
   }
+  // A folder may have a name like a file's.
+  if (by_extension && !(folder && is_folder)) return *by_extension;
   const std::string name(kind_name(kind));
   if (known.empty()) throw UsageError(text + ": no file holds a value of the kind '" + name + "'");
   if (any_file) return *any_file;
   const std::string expected = name + " can be read from " + listed_extensions(known);
-  std::error_code unreadable;
   if (!folder) throw UsageError(text + ": " + expected);
   if (!std::filesystem::is_regular_file(text, unreadable)) {
     const Format* numbered = format_of_frames(formats_, kind, text);
@@ -277,6 +278,11 @@ const Format& OperationTable::writer(const Output& output,
         of_found = extension;
       }
       known.push_back(extension);
+    }
+  }
+  for (const Format& format : formats_) {
+    if (format.kind == output.kind && format.has(lower_extension(target))) {
+      require_built(format, target.string());
     }
   }
   const std::string wanted = written_extension(formats_, target);

@@ -205,7 +205,7 @@ class OperationTable {
   LandmarkFinder landmark_finder_;
 };
 
-/// Adds the operations of the toolkit (toolkit_operations.h) and the formats of io.
+/// Adds the operations of the toolkit (toolkit_operations.h) and the formats of files.
 void add_toolkit(OperationTable& table);
 /// Adds the operation `markers` and the format of its file. The operation searches for landmarks on
 /// two heads and writes them.

@@ -1,12 +1,17 @@
 #include "toolkit/operations/toolkit_operations.h"
 
 #include "toolkit/formats/formats.h"
+#include "toolkit/formats/sequence_file.h"
 #include "toolkit/operations/weight_tables.h"
 
 namespace mimetra {
 
 void add_toolkit(OperationTable& table) {
-  for (const Format& format : formats()) table.add(format);
+  for (Format format : formats()) {
+    if (format.open) format.read = read_sequence_value;
+    if (format.create) format.write = write_sequence_value;
+    table.add(std::move(format));
+  }
   add_weight_formats(table);
   table.add(info_operation());
   table.add(check_operation());

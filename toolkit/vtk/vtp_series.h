@@ -36,12 +36,12 @@ std::vector<std::filesystem::path> write_vtp_series(const FieldSequence& fields,
 /// The other frames are read when they are needed, with the same errors. Throws IoError, which
 /// names the file, and Cancelled. Throws MismatchError if a frame has other vertices or faces.
 /// Faces may be in another order or triangulated differently, but not flipped.
-FieldSequence open_vtp_series(const std::filesystem::path& path,
-                              const ReadOptions& = {.fields = true}, const Context& context = {});
+FieldSequence open_vtp_series(const std::filesystem::path& path, const ReadOptions& = {},
+                              const Context& context = {});
 
 /// Reads a series like open_vtp_series(), with all frames in memory.
-FieldSequence read_vtp_series(const std::filesystem::path& path,
-                              const ReadOptions& = {.fields = true}, const Context& context = {});
+FieldSequence read_vtp_series(const std::filesystem::path& path, const ReadOptions& = {},
+                              const Context& context = {});
 
 /// Files that open_vtp_series() reads for a path: the list or the file, and all frames.
 std::vector<std::filesystem::path> vtp_series_files(const std::filesystem::path& path);

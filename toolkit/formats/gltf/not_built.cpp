@@ -5,42 +5,20 @@
 // In place of the other sources of this folder.
 
 namespace mimetra {
-namespace fs = std::filesystem;
-namespace {
 
-constexpr const char* kNotBuilt =
-    "glTF is not built into this program; build it with -DMIMETRA_GLTF=ON";
-
-OpenSequence refuse_to_open(const fs::path& path, const ReadOptions&, const Context&) {
-  throw IoError(path.string(), kNotBuilt);
-}
-
-ReadValue refuse_to_read(const std::string& text, const ReadOptions&, const Context&) {
-  throw IoError(text, kNotBuilt);
-}
-
-Format::Paths refuse_to_write(const Data&, const fs::path& target, const WriteOptions&,
-                              const Context&) {
-  throw OutputError(target.string(), kNotBuilt);
-}
-
-}  // namespace
-
-Scene read_gltf(const fs::path& path, const Context&) {
-  throw IoError(path.string(), kNotBuilt);
+Scene read_gltf(const std::filesystem::path& path, const Context&) {
+  throw IoError(path.string(), "glTF is not built into this program");
 }
 
 std::vector<Format> gltf_formats() {
-  Format sequence{.name = "glTF 2.0 (not built)",
-                  .extensions = {".glb", ".gltf", ".vrm"},
-                  .write = refuse_to_write,
-                  .open = refuse_to_open};
-  Format model{.name = sequence.name,
-               .kind = DataKind::model,
-               .extensions = sequence.extensions,
-               .read = refuse_to_read,
-               .write = refuse_to_write};
-  return {std::move(sequence), std::move(model)};
+  const auto missing = [](std::string name, DataKind kind, std::vector<std::string> extensions) {
+    return Format{.name = std::move(name),
+                  .kind = kind,
+                  .extensions = std::move(extensions),
+                  .built_by = "MIMETRA_GLTF"};
+  };
+  return {missing("glTF 2.0", DataKind::sequence, {".glb", ".gltf", ".vrm"}),
+          missing("glTF 2.0", DataKind::model, {".glb", ".gltf", ".vrm"})};
 }
 
 }  // namespace mimetra

@@ -8,7 +8,6 @@
 #include <set>
 #include <stdexcept>
 
-#include "toolkit/io/format.h"
 #include "toolkit/io/frame_times.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/frame_source.h"

@@ -3,7 +3,6 @@
 #include "toolkit/formats/hdf5/components_file.h"
 #include "toolkit/formats/hdf5/vtkhdf_file.h"
 #include "toolkit/io/file_parameters.h"
-#include "toolkit/io/regions_file.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
