@@ -35,6 +35,8 @@ std::vector<BadInput> hostile_cases() {
   add_case(all, "named_pipe", "config", pipe_named("c.json"),
            "regions head --weights take.csv --config c.json -o r.json", 3,
            {"c.json", "is a named pipe"});
+  add_case(all, "named_pipe", "expression", pipe_named("head/expressions/x.ply"), "info head", 3,
+           {"x.ply", "is a named pipe"});
   add_case(all, "device", "pvd", file("d.pvd", list_of("/dev/zero")), "info d.pvd", 3,
            {"/dev/zero: is a device"});
   add_case(all, "loop", "pvd", file("l.pvd", list_of("l.pvd")), "info l.pvd", 3, {"PolyData"});

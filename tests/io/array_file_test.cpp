@@ -143,6 +143,8 @@ TEST(ArrayFile, OtherThanFramesIsAnErrorThatNamesThePart) {
   EXPECT_THAT(error_of(npy("<f8", "False", "(2, 3)", raw(kSix) + "xx")),
               HasSubstr("a.npy: 2 bytes follow the values, expected the end of the file after 2 x "
                         "3"));
+  EXPECT_THAT(error_of(npy("<f8', 'descr': '<f8", "False", "(2, 3)", raw(kSix))),
+              HasSubstr("its header has 'descr' twice"));
   // Before memory is asked for.
   EXPECT_THAT(error_of(npy("<f8", "False", "(4000000000, 4000000000, 3)", raw(kSix))),
               HasSubstr("a.npy: is truncated: 6 values, expected 4000000000 x 4000000000 x 3"));

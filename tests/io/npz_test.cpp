@@ -113,6 +113,16 @@ TEST_F(NpzFiles, KnowTheirTimesAndTheirRestPose) {
   EXPECT_TRUE(sequence.rest_is_known());
 }
 
+TEST_F(NpzFiles, RefuseTwoMembersOfOneName) {
+  write({positions_, {"qositions.npy", positions_.second}, faces_});
+  std::string bytes = read_file(folder_ / "a.npz");
+  for (auto at = bytes.find("qositions"); at != bytes.npos; at = bytes.find("qositions")) {
+    bytes[at] = 'p';
+  }
+  write_bytes(folder_ / "a.npz", bytes);
+  EXPECT_THAT(message_of<IoError>([this] { read(); }), HasSubstr("holds 'positions.npy' twice"));
+}
+
 TEST_F(NpzFiles, WithoutFacesTakeThoseBesideThem) {
   write({positions_});
   EXPECT_THAT(message_of<IoError>([this] { read(); }), HasSubstr("a.topology.ply"));

@@ -257,6 +257,11 @@ TEST(WeightsOfTheCapture, DriveEveryExpressionOfTheIctFace) {
   EXPECT_TRUE(match.undriven_expressions.empty());
 }
 
+TEST_F(Weights, MayHaveASign) {
+  EXPECT_EQ(read("a,b\n+1,-0.5\n+.5,0\n").weights.col(0), Eigen::Vector2d(1, 0.5));
+  EXPECT_THAT(message_of("a\n+-1\n"), HasSubstr("expected a finite number, found '+-1'"));
+}
+
 TEST_F(Weights, OfRowsThatLostTheFaceLieBetweenTheirNeighbours) {
   // Without values, and cut off behind their number.
   const WeightTrack track = read(
@@ -266,6 +271,9 @@ TEST_F(Weights, OfRowsThatLostTheFaceLieBetweenTheirNeighbours) {
                                                 testing::DoubleNear(0.6, 1e-15), 0.8, 0.8));
   EXPECT_THAT(track.notes, testing::Contains(HasSubstr("rows without weights")));
   EXPECT_THAT(message_of("a,b\n,\n,\n"), HasSubstr("no row with weights"));
+  EXPECT_THAT(message_of("Timecode,BlendShapeCount,JawOpen\n10:00:00:01,61,0.5\n10:00:00:02,61,\n"
+                         "10:00:00:03,61\n"),
+              HasSubstr("line 4: is cut off: it has no weights of the 61 that it counts"));
   EXPECT_THAT(message_of("a,b\n0.5,\n"), HasSubstr("'b': expected a finite number"));
   EXPECT_THAT(message_of("a,b\n0.5\n"), HasSubstr("1 field, expected 2"));
 }

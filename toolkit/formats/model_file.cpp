@@ -125,7 +125,8 @@ std::vector<fs::path> sorted_files_in(const fs::path& folder) {
     const bool hidden = entry->path().filename().string().starts_with('.');
     std::error_code missing;
     const bool is_dangling = entry->is_symlink(missing) && !entry->exists(missing);
-    if (!hidden && (is_dangling || entry->is_regular_file(missing))) files.push_back(entry->path());
+    // Reading refuses devices and pipes.
+    if (!hidden && (is_dangling || !entry->is_directory(missing))) files.push_back(entry->path());
   }
   std::ranges::sort(files, [](const fs::path& a, const fs::path& b) {
     return natural_less(a.filename().string(), b.filename().string());
@@ -241,7 +242,7 @@ Parts parts_from_json(const fs::path& file) {
     };
     parts = {entry("neutral"), entry("shape"), entry("expressions"), entry("identities")};
   } catch (const Json::exception& error) {
-    throw IoError(file.string(), std::string("expected a JSON object of paths: ") + error.what());
+    throw IoError(file.string(), "expected a JSON object of paths: " + json_reason(error));
   }
   if (!parts.neutral && !parts.shape) {
     throw IoError(file.string(), "names neither 'neutral' nor 'shape'");

@@ -50,7 +50,11 @@ std::string_view value_of(const std::string& path, std::string_view text, const 
     const std::size_t colon = at == std::string_view::npos ? at : text.find(':', at);
     const std::size_t value =
         colon == std::string_view::npos ? colon : text.find_first_not_of(" \t\n", colon + 1);
-    if (value != std::string_view::npos) return text.substr(value);
+    if (value == std::string_view::npos) continue;
+    if (text.find(quote + key + quote, at + 1) != std::string_view::npos) {
+      throw IoError(path, "its header has '" + key + "' twice");
+    }
+    return text.substr(value);
   }
   throw IoError(path, "its header has no '" + key + "'");
 }

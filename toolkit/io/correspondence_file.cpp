@@ -146,7 +146,7 @@ Correspondence read_correspondence(const std::filesystem::path& path, const Conn
     }
     return pairs;
   } catch (const Json::exception& error) {
-    throw IoError(name, std::string("expected ") + kCorrespondenceForm + ": " + error.what());
+    throw IoError(name, std::string("expected ") + kCorrespondenceForm + ": " + json_reason(error));
   }
 }
 

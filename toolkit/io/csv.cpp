@@ -52,6 +52,7 @@ std::vector<std::string_view> fields_of(std::string_view line, char separator) {
 /// Parses a finite number with a decimal point. If commas do not separate the fields, a decimal
 /// comma is accepted as well.
 std::optional<double> number_in(std::string_view field, char separator) {
+  if (field.size() > 1 && field[0] == '+' && field[1] != '-') field.remove_prefix(1);
   std::string with_point(field);
   if (separator != ',' && field.find('.') == std::string_view::npos) {
     std::ranges::replace(with_point, ',', '.');

@@ -79,15 +79,15 @@ class Guard : public nlohmann::json_sax<Json> {
   std::vector<std::set<std::string>> keys_;
 };
 
-/// Returns "[json.exception.parse_error.101] parse error at line 1, column 8: ..." from "line" on.
-std::string without_codes(const std::string& message) {
+}  // namespace
+
+std::string json_reason(const std::exception& error) {
+  const std::string message = error.what();
   const auto line = message.find("line ");
   const auto bracket = message.find("] ");
   if (line != std::string::npos) return message.substr(line, kLongestMessage);
   return message.substr(bracket == std::string::npos ? 0 : bracket + 2, kLongestMessage);
 }
-
-}  // namespace
 
 Json parse_json(const std::string& path, std::string_view text, const std::string& expected) {
   const auto fail = [&](const std::string& found) -> Json {
@@ -103,7 +103,7 @@ Json parse_json(const std::string& path, std::string_view text, const std::strin
     Json::sax_parse(json, &guard);
     return Json::parse(json);
   } catch (const Json::exception& error) {
-    return fail(without_codes(error.what()));
+    return fail(json_reason(error));
   } catch (const std::runtime_error& error) {
     return fail(error.what());
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <exception>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -19,6 +20,9 @@ using Json = nlohmann::ordered_json;
 /// nested levels, an object with a repeated key or more than 10000 keys, and zero bytes in strings.
 Json parse_json(const std::string& path, std::string_view text,
                 const std::string& expected = "JSON");
+
+/// Reason of a Json::exception without the library's codes: "type must be string, but is number".
+std::string json_reason(const std::exception& error);
 
 /// Parses a file. Throws as parse_json() and read_file().
 Json read_json(const std::filesystem::path& path, const std::string& expected = "JSON");

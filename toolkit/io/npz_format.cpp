@@ -3,6 +3,7 @@
 #include <cstring>
 #include <deque>
 #include <mutex>
+#include <set>
 
 #include <zip.h>
 
@@ -160,10 +161,15 @@ ZipReader::ZipReader(const fs::path& path) : zip_(std::make_shared<OpenZip>()) {
 
 std::vector<std::string> ZipReader::names() const {
   std::vector<std::string> names;
+  std::set<std::string> seen;
   const zip_int64_t count = zip_get_num_entries(zip_->archive, 0);
   for (zip_int64_t i = 0; i < count; ++i) {
     const char* name = zip_get_name(zip_->archive, static_cast<zip_uint64_t>(i), 0);
-    if (name) names.emplace_back(name);
+    if (!name) continue;
+    if (!seen.insert(name).second) {
+      throw IoError(zip_->path.string(), std::string("holds '") + name + "' twice");
+    }
+    names.emplace_back(name);
   }
   return names;
 }

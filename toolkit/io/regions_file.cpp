@@ -133,7 +133,7 @@ Regions regions_of_json(const std::string& path, const std::string& text, int ve
     if (json.is_object()) regions.energy_share = share_of(json);
     return regions;
   } catch (const Json::exception& error) {
-    throw IoError(path, std::string("expected ") + kJsonForm + ": " + error.what());
+    throw IoError(path, std::string("expected ") + kJsonForm + ": " + json_reason(error));
   }
 }
 

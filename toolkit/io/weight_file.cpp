@@ -368,7 +368,9 @@ class WeightReader {
         notes_.push_back(note_on_timestamp(std::string(name)));
       } else if (holds_frame_numbers(plain)) {
         frame_column_ = column;
-      } else if (plain != kBlendshapeCount) {
+      } else if (plain == kBlendshapeCount) {
+        count_column_ = column;
+      } else {
         weight_columns_.push_back(column);
       }
     }
@@ -388,6 +390,11 @@ class WeightReader {
       return csv_.field(column).empty() || lower_case(std::string(csv_.field(column))) == "nan";
     };
     const bool is_lost = std::ranges::all_of(weight_columns_, is_missing);
+    if (is_lost && count_column_ && !is_missing(*count_column_) &&
+        csv_.number(*count_column_) > 0 && !csv_.is_given(weight_columns_.back())) {
+      csv_.fail("is cut off: it has no weights of the " + std::string(csv_.field(*count_column_)) +
+                " that it counts");
+    }
     for (const std::size_t column : weight_columns_) {
       const bool is_given = !is_missing(column) || (!is_lost && !csv_.is_given(column));
       weights_.push_back(is_given ? csv_.number(column) : kMissingWeight);
@@ -491,7 +498,7 @@ class WeightReader {
   CsvReader csv_;
   int first_line_ = 0;                     ///< of the first row of weights
   std::vector<std::string> first_fields_;  ///< first row, in the columns of weights
-  std::optional<std::size_t> time_column_, timecode_column_, frame_column_;
+  std::optional<std::size_t> time_column_, timecode_column_, frame_column_, count_column_;
   double units_per_second_ = 1;
   std::vector<long long> frame_numbers_;
   std::vector<std::size_t> weight_columns_;

@@ -54,9 +54,7 @@ int main(int argc, char** argv) {
   add_fitting(table);
   if (argc > 1) {
     try {
-      const Format& format = table.reader(DataKind::landmarks, argv[1]);
-      const Parameters parameters(format.reading);
-      format.read(argv[1], {.parameters = parameters}, {});
+      table.reader(DataKind::landmarks, argv[1]).read(argv[1], {}, {});
     } catch (const IoError& error) {
       std::cerr << error.what() << '\n';
       return 3;

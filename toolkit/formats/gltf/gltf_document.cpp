@@ -39,8 +39,7 @@ class GltfParser {
     try {
       read_root(root, chunks.binary);
     } catch (const Json::exception& error) {
-      const std::string what = error.what();
-      fail(what.substr(what.find(']') + 2));  // after nlohmann's code
+      fail(json_reason(error));
     }
     return std::move(document_);
   }
