@@ -48,8 +48,9 @@ Mesh strip() {
   }
   mesh.add_vertex(Point(3, 0.5, 0));
   mesh.add_vertex(Point(9, 9, 9));
-  const auto face = [&mesh](std::vector<int> corners) {
+  const auto face = [&mesh](const std::vector<int>& corners) {
     std::vector<VertexHandle> handles;
+    handles.reserve(corners.size());
     for (const int corner : corners) handles.push_back(mesh.vertex_handle(corner));
     mesh.add_face(handles);
   };

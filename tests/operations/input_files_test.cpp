@@ -28,6 +28,7 @@ class InputFiles : public testing::Test {
     std::string said;
     test::on_ranks(2, [&](const Ranks& ranks) {
       std::vector<std::filesystem::path> files;
+      files.reserve(names.size());
       for (const std::string& name : names) {
         files.push_back(folder_ / (ranks.rank() == 0 ? "own" : "other") / name);
       }

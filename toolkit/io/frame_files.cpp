@@ -136,6 +136,7 @@ std::vector<fs::path> files_of_pattern(const std::string& pattern) {
 /// Returns "matches no OBJ or PLY file".
 std::string nothing_of(const std::string& verb, const std::vector<std::string>& extensions) {
   std::vector<std::string> names;
+  names.reserve(extensions.size());
   for (const std::string& extension : extensions) names.push_back(upper_case(extension.substr(1)));
   return verb + " no " + joined(names, ", ", " or ") + " file";
 }

@@ -287,7 +287,7 @@ RegionsCall read_regions_call(const Invocation& invocation) {
   check_given_components(invocation);
   RegionsCall call =
       regions_parameters().read(invocation.parameters, &invocation.get<FieldSequence>("sequence"));
-  call.regions = with_most_discs(std::move(call.regions), invocation.parameters);
+  call.regions = with_most_discs(call.regions, invocation.parameters);
   call.source = described(std::move(call.source), invocation.input("sequence"));
   const Components* given = invocation.find<Components>("components");
   if (call.component_fields && given && given->support.size() == 0) {

@@ -92,7 +92,7 @@ TransferOptions options_of(const Invocation& invocation) {
   options.full = takes_all_triangles(invocation);
   if (!options.full) set_usual_border(invocation, options.solve);
   options.source = described(std::move(options.source), source);
-  options.regions = with_most_discs(std::move(options.regions), invocation.parameters);
+  options.regions = with_most_discs(options.regions, invocation.parameters);
   if (auto painted = painted_region_of(invocation)) {
     options.given = std::move(*painted);
   } else if (const RegionData* regions = invocation.find<RegionData>("regions")) {

@@ -81,9 +81,9 @@ struct GltfNumber {
 
 template <typename Number>
 constexpr GltfNumber gltf_number() {
-  constexpr bool has_one = sizeof(Number) < 4;
+  constexpr bool kHasOne = sizeof(Number) < 4;
   return {sizeof(Number), std::is_unsigned_v<Number>,
-          has_one ? static_cast<double>(std::numeric_limits<Number>::max()) : 1,
+          kHasOne ? static_cast<double>(std::numeric_limits<Number>::max()) : 1,
           decode_numbers<Number>};
 }
 
