@@ -181,7 +181,8 @@ Detector of_one_level(const Detector& detector) {
 }
 
 /// Searches for faces near the size and place of the last one: in three levels of the pyramid of a
-/// part around it. Windows lie where a search of the whole image has them, to a pixel of the level.
+/// part around it. Windows are at the places of a search of the whole image, to within a pixel of
+/// the level.
 Detections found_near(const Image& image, const Face& last, Detector& one_level) {
   using Pyramid = dlib::pyramid_down<6>;
   constexpr double kStep = 6.0 / 5;    // from one level to the level before

@@ -41,7 +41,7 @@ Parameters all_parameters() {
   return Parameters(std::move(all));
 }
 
-/// What is read is said again as a manifest says it.
+/// Writes the value that it reads as a manifest would.
 void read_options(const fs::path& file) {
   static const Parameters declared = all_parameters();
   Parameters parameters = declared;
@@ -113,7 +113,7 @@ void write_correspondence(const fs::path& file) {
                                         grid().connectivity, grid().connectivity));
 }
 
-/// What is read is written again, and applied.
+/// Writes and applies the value that it reads.
 void read_map(const fs::path& file) {
   const Retargeting map = parse_retargeting(file.string(), read_file(file));
   retargeting_json(map);
@@ -130,7 +130,7 @@ void write_map(const fs::path& file) {
   write_bytes(file, retargeting_json(map));
 }
 
-/// Weights of poses that lie beside the file.
+/// Weights of the poses beside the file.
 void read_poses(const fs::path& file) {
   const fs::path folder = file.parent_path();
   for (const char* mesh : {"a.ply", "b.ply"}) {

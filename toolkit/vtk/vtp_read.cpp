@@ -87,7 +87,7 @@ std::vector<FrameFile> listed_by(const fs::path& path) {
   return entries;
 }
 
-/// What the name of a series refers to.
+/// Files to which the name of a series refers.
 struct SeriesFiles {
   FrameSeries series;
   std::optional<Eigen::VectorXd> times = {};
